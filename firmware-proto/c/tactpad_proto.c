@@ -6,8 +6,13 @@ enum {
     SAMPLE = 0x01,
     IDENTITY = 0x02,
     ACKNOWLEDGEMENT = 0x03,
+    CHANNELS = 0x04,
+    CONTACT = 0x05,
     SAMPLE_BODY_LEN = HEADER_LEN + 52,
     STATUS_DEFINED = 0x0FFF,
+    STATUS_OF_CHANNELS = 0x01FF,
+    CONTACT_TOUCHED = 1 << 0,
+    CONTACT_SHEAR = 1 << 1,
     MESSAGE_REPORT_ID = 1,
     COMMAND_REPORT_ID = 2,
     /* The longest frame of any version before stuffing. */
@@ -64,6 +69,42 @@ static uint8_t *put_sample(uint8_t *out, const struct tactpad_sample *sample)
     return put_u16(out, sample->status & STATUS_DEFINED);
 }
 
+static uint8_t *put_channels(uint8_t *out, const struct tactpad_channels *sample)
+{
+    int channels = sample->channels < TACTPAD_FEW_CHANNELS_MAX ? sample->channels : TACTPAD_FEW_CHANNELS_MAX;
+    uint16_t there = (uint16_t)((1u << channels) - 1u);
+    out = put_header(out, CHANNELS);
+    out = put_u32(out, sample->sequence);
+    out = put_u32(out, (uint32_t)sample->time_us);
+    out = put_u32(out, (uint32_t)(sample->time_us >> 32));
+    *out++ = (uint8_t)channels;
+    *out++ = 0;
+    out = put_u16(out, (uint16_t)sample->temperature_centi_c);
+    out = put_u16(out, sample->status & ((STATUS_DEFINED & ~STATUS_OF_CHANNELS) | there));
+    for (int channel = 0; channel < channels; channel++)
+        out = put_u32(out, (uint32_t)sample->counts[channel]);
+    return out;
+}
+
+static uint8_t *put_contact(uint8_t *out, const struct tactpad_contact *sample)
+{
+    uint16_t touched = sample->is_touched ? CONTACT_TOUCHED : 0;
+    uint16_t shear = sample->has_shear ? CONTACT_SHEAR : 0;
+    out = put_header(out, CONTACT);
+    out = put_u32(out, sample->sequence);
+    out = put_u32(out, (uint32_t)sample->time_us);
+    out = put_u32(out, (uint32_t)(sample->time_us >> 32));
+    for (int axis = 0; axis < 2; axis++)
+        out = put_u32(out, (uint32_t)sample->place_um[axis]);
+    for (int axis = 0; axis < 3; axis++)
+        out = put_u32(out, (uint32_t)sample->force_mn[axis]);
+    out = put_u16(out, sample->place_deviation_um);
+    out = put_u16(out, sample->shear_deviation_mn);
+    out = put_u16(out, sample->normal_deviation_mn);
+    out = put_u16(out, touched | shear);
+    return put_u16(out, sample->status & (TACTPAD_STATUS_RESTARTED | TACTPAD_STATUS_SUPPLY_FAULT));
+}
+
 static uint8_t *put_identity(uint8_t *out, const struct tactpad_identity *identity)
 {
     bool ended = false;
@@ -115,6 +156,18 @@ size_t tactpad_encode_sample(const struct tactpad_sample *sample, uint8_t out[TA
     return put_frame(body, put_sample(body, sample), out);
 }
 
+size_t tactpad_encode_channels(const struct tactpad_channels *sample, uint8_t out[TACTPAD_ENCODED_MAX])
+{
+    uint8_t body[SAMPLE_BODY_LEN + CRC_LEN];
+    return put_frame(body, put_channels(body, sample), out);
+}
+
+size_t tactpad_encode_contact(const struct tactpad_contact *sample, uint8_t out[TACTPAD_ENCODED_MAX])
+{
+    uint8_t body[SAMPLE_BODY_LEN + CRC_LEN];
+    return put_frame(body, put_contact(body, sample), out);
+}
+
 size_t tactpad_encode_identity(const struct tactpad_identity *identity, uint8_t out[TACTPAD_ENCODED_MAX])
 {
     uint8_t body[SAMPLE_BODY_LEN + CRC_LEN];
@@ -155,6 +208,16 @@ static void pad_report(uint8_t *report, uint8_t *end)
 void tactpad_report_sample(const struct tactpad_sample *sample, uint8_t out[TACTPAD_REPORT_LEN])
 {
     pad_report(out, put_sample(out + 1, sample));
+}
+
+void tactpad_report_channels(const struct tactpad_channels *sample, uint8_t out[TACTPAD_REPORT_LEN])
+{
+    pad_report(out, put_channels(out + 1, sample));
+}
+
+void tactpad_report_contact(const struct tactpad_contact *sample, uint8_t out[TACTPAD_REPORT_LEN])
+{
+    pad_report(out, put_contact(out + 1, sample));
 }
 
 void tactpad_report_identity(const struct tactpad_identity *identity, uint8_t out[TACTPAD_REPORT_LEN])

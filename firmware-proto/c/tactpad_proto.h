@@ -17,6 +17,8 @@ extern "C" {
 enum {
     TACTPAD_PROTOCOL_VERSION = 1,
     TACTPAD_CHANNELS = 9,
+    /* The most channels of a pad that has fewer than nine. */
+    TACTPAD_FEW_CHANNELS_MAX = 8,
     TACTPAD_SERIAL_NUMBER_LEN = 16,
     /* The longest frame that a pad sends: a sample, stuffed, with its closing zero. */
     TACTPAD_ENCODED_MAX = 60,
@@ -47,10 +49,45 @@ struct tactpad_sample {
     uint16_t status;
 };
 
+/* One conversion of a pad that has one to eight channels. More than eight are sent as eight. */
+struct tactpad_channels {
+    uint32_t sequence;
+    /* Microseconds since the pad started, at the end of the conversion. */
+    uint64_t time_us;
+    uint8_t channels;
+    int32_t counts[TACTPAD_FEW_CHANNELS_MAX];
+    int16_t temperature_centi_c;
+    /* Bits that mean nothing yet, and those of channels that are not there, are sent as zero. */
+    uint16_t status;
+};
+
+/* A deviation that the pad cannot tell. */
+#define TACTPAD_DEVIATION_UNKNOWN 65535u
+
+/* What touches the plate now, of a pad that decodes on its own. */
+struct tactpad_contact {
+    uint32_t sequence;
+    /* Microseconds since the pad started, when the contact was measured. */
+    uint64_t time_us;
+    /* x, y in micrometres from the centre of the plate. */
+    int32_t place_um[2];
+    /* Forces on the plate along x, along y, and into it, in millinewtons. */
+    int32_t force_mn[3];
+    /* Standard deviations: of x and y in micrometres; of forces along x and y, and of that into the plate, in millinewtons. */
+    uint16_t place_deviation_um;
+    uint16_t shear_deviation_mn;
+    uint16_t normal_deviation_mn;
+    bool is_touched;
+    bool has_shear;
+    /* Of a restart and of a supply fault; other bits are sent as zero. */
+    uint16_t status;
+};
+
 /* Who the pad is and what its counts are worth. */
 struct tactpad_identity {
     /* Visible ASCII, ended by a zero unless all sixteen are used. What follows a zero is not sent. */
     char serial_number[TACTPAD_SERIAL_NUMBER_LEN];
+    /* 9; 1 to 8 of a pad that has fewer; 0 of one that decodes on its own. */
     uint8_t channels;
     uint8_t count_bits;
     uint16_t rate_hz;
@@ -62,12 +99,16 @@ enum tactpad_result { TACTPAD_DONE = 0, TACTPAD_REFUSED = 1, TACTPAD_UNKNOWN = 2
 
 /* Write one frame to out, with its closing zero; return its length. */
 size_t tactpad_encode_sample(const struct tactpad_sample *sample, uint8_t out[TACTPAD_ENCODED_MAX]);
+size_t tactpad_encode_channels(const struct tactpad_channels *sample, uint8_t out[TACTPAD_ENCODED_MAX]);
+size_t tactpad_encode_contact(const struct tactpad_contact *sample, uint8_t out[TACTPAD_ENCODED_MAX]);
 size_t tactpad_encode_identity(const struct tactpad_identity *identity, uint8_t out[TACTPAD_ENCODED_MAX]);
 size_t tactpad_encode_acknowledgement(uint8_t command_kind, enum tactpad_result result,
                                       uint8_t out[TACTPAD_ENCODED_MAX]);
 
 /* Write one input report, with its report id and padding. */
 void tactpad_report_sample(const struct tactpad_sample *sample, uint8_t out[TACTPAD_REPORT_LEN]);
+void tactpad_report_channels(const struct tactpad_channels *sample, uint8_t out[TACTPAD_REPORT_LEN]);
+void tactpad_report_contact(const struct tactpad_contact *sample, uint8_t out[TACTPAD_REPORT_LEN]);
 void tactpad_report_identity(const struct tactpad_identity *identity, uint8_t out[TACTPAD_REPORT_LEN]);
 void tactpad_report_acknowledgement(uint8_t command_kind, enum tactpad_result result,
                                     uint8_t out[TACTPAD_REPORT_LEN]);

@@ -3,7 +3,9 @@
 use core::fmt;
 
 use crate::PROTOCOL_VERSION;
+use crate::channels::{ChannelSample, FEW_CHANNELS_MAX};
 use crate::command::{AckResult, Command};
+use crate::contact::ContactSample;
 use crate::cursor::{Reader, Writer};
 use crate::identity::Identity;
 use crate::sample::Sample;
@@ -15,12 +17,18 @@ const HEADER_LEN: usize = 2;
 pub(crate) const BODY_MAX: usize = HEADER_LEN + Sample::PAYLOAD_LEN;
 
 const _: () = assert!(Identity::PAYLOAD_LEN <= Sample::PAYLOAD_LEN);
+const _: () = assert!(ChannelSample::payload_len(FEW_CHANNELS_MAX) <= Sample::PAYLOAD_LEN);
+const _: () = assert!(ContactSample::PAYLOAD_LEN <= Sample::PAYLOAD_LEN);
 
 /// What a pad tells its host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Message {
-    /// One conversion of all channels, sent unasked at the pad's rate.
+    /// One conversion of all nine channels, sent unasked at the pad's rate.
     Sample(Sample),
+    /// The same of a pad that has fewer channels.
+    Channels(ChannelSample),
+    /// The same of a pad that decodes on its own.
+    Contact(ContactSample),
     /// The answer to [`Command::Identify`].
     Identity(Identity),
     /// The answer to any other command.
@@ -98,6 +106,8 @@ impl Body for Message {
     fn kind(&self) -> u8 {
         match self {
             Self::Sample(_) => Sample::KIND,
+            Self::Channels(_) => ChannelSample::KIND,
+            Self::Contact(_) => ContactSample::KIND,
             Self::Identity(_) => Identity::KIND,
             Self::Acknowledgement { .. } => Self::ACKNOWLEDGEMENT,
         }
@@ -106,6 +116,8 @@ impl Body for Message {
     fn write_payload(&self, out: &mut Writer) {
         match self {
             Self::Sample(sample) => sample.write(out),
+            Self::Channels(sample) => sample.write(out),
+            Self::Contact(sample) => sample.write(out),
             Self::Identity(identity) => identity.write(out),
             Self::Acknowledgement { command, result } => out.put(&[*command, result.byte()]),
         }
@@ -114,6 +126,8 @@ impl Body for Message {
     fn read_payload(kind: u8, payload: &mut Reader) -> Result<Self, WireError> {
         let message = match kind {
             Sample::KIND => Sample::read(payload).map(Self::Sample),
+            ChannelSample::KIND => ChannelSample::read(payload).map(Self::Channels),
+            ContactSample::KIND => ContactSample::read(payload).map(Self::Contact),
             Identity::KIND => Identity::read(payload).map(Self::Identity),
             Self::ACKNOWLEDGEMENT => read_acknowledgement(payload),
             _ => return Err(WireError::UnknownKind(kind)),

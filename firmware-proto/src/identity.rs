@@ -7,8 +7,8 @@ use crate::cursor::{Reader, Writer};
 pub struct Identity {
     /// Tells this pad from its siblings.
     pub serial_number: SerialNumber,
-    /// Number of strain channels; [`CHANNELS`](crate::CHANNELS) in version 1. It is passed on unchecked, so
-    /// that a host can say what it refuses.
+    /// Number of channels: [`CHANNELS`](crate::CHANNELS), or 1 to 8 of a pad that has fewer, or 0 of one that decodes on
+    /// its own. It is passed on unchecked, so that a host can say what it refuses.
     pub channels: u8,
     /// Bits of a count, 24 to 32: codes run from -(2^(bits-1)) to 2^(bits-1) - 1. Passed on unchecked.
     pub count_bits: u8,

@@ -1,7 +1,9 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+pub mod channels;
 pub mod command;
+pub mod contact;
 pub mod crc;
 pub mod frame;
 pub mod hid;

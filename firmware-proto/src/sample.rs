@@ -72,6 +72,24 @@ impl Status {
         Self(self.0 & Self::DEFINED)
     }
 
+    /// What it says of a pad with so many channels.
+    pub(crate) const fn of_channels(self, channels: u8) -> Self {
+        let channel_bits = if (channels as usize) < CHANNELS { (1 << channels) - 1 } else { 0x01FF };
+        Self(
+            self.defined().0
+                & (Self::TEMPERATURE_INVALID | Self::RESTARTED | Self::SUPPLY_FAULT | channel_bits),
+        )
+    }
+
+    /// What it says of the pad as a whole: that it began anew, or that nothing can be trusted.
+    pub(crate) const fn of_whole_pad(self) -> Self {
+        Self(self.0 & (Self::RESTARTED | Self::SUPPLY_FAULT))
+    }
+
+    pub(crate) const fn with_temperature_valid(self) -> Self {
+        Self(self.0 & !Self::TEMPERATURE_INVALID)
+    }
+
     /// Whether channel `channel` (0 to 8, in wire order) is out of its converter's range or its bridge is
     /// open, so that its count means nothing. There is no channel from 9 on, so that is `false`.
     #[must_use]

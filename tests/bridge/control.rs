@@ -154,6 +154,30 @@ fn only_one_bridge_has_the_socket_and_a_dead_ones_is_taken_over() {
 }
 
 #[test]
+fn two_bridges_with_names_are_asked_each_by_its_own() {
+    let left = start(&["--name", "left", "--pad", "serial:pad", "--wait"]);
+    let ctl = |line: &str| {
+        let output =
+            tactpad(left.folder.path()).args(line.split(' ')).stdout(Stdio::piped()).output().unwrap();
+        (output.status.success(), String::from_utf8(output.stdout).unwrap())
+    };
+    let state = |line: &str| ctl(line).1.contains("\"state\":\"paused\"");
+    assert!(comes_true(|| ctl("ctl --name left status").0));
+    let arguments = ["run", "--name", "right", "--pad", "serial:other", "--wait", "--output", "none"];
+    let mut right = tactpad(left.folder.path()).args(arguments).stderr(Stdio::null()).spawn().unwrap();
+    assert!(comes_true(|| ctl("ctl status --name right").0));
+    assert!(ctl("ctl --name left pause").0);
+    assert_eq!(
+        [state("ctl --name left status --json"), state("ctl --name right status --json")],
+        [true, false]
+    );
+    assert!(!ctl("ctl status").0, "nobody has no name");
+    assert!(!ctl("ctl --name a/b status").0);
+    assert!(ctl("ctl --name right quit").0);
+    assert!(right.wait().unwrap().success());
+}
+
+#[test]
 fn idle_clients_do_not_keep_others_from_asking() {
     let bridge = start(&["--pad", "serial:pad", "--wait"]);
     await_status(&bridge, "waits", |status| status["state"] == "waiting");

@@ -18,6 +18,7 @@ mod guest;
 mod hanging_folder;
 mod kept_play;
 mod killed;
+mod load_cells;
 mod nostd;
 mod presses;
 mod programs;

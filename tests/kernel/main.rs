@@ -24,6 +24,7 @@ mod joystick;
 mod latency;
 mod loaded;
 mod neutral;
+mod owned_pads;
 mod pad;
 mod playing;
 mod program;
@@ -86,6 +87,36 @@ fn pointer_is_a_mouse_of_its_own_and_moves() {
 #[test]
 fn tablet_is_a_device_of_its_own_and_goes_where_the_finger_is() {
     in_guest("tablet_is_a_device_of_its_own_and_goes_where_the_finger_is", playing::tablet);
+}
+
+#[test]
+fn pens_and_fingers_on_pads_that_people_own_play() {
+    in_guest("pens_and_fingers_on_pads_that_people_own_play", owned_pads::strokes);
+}
+
+#[test]
+fn a_tablet_moves_no_pointer_while_it_plays_and_is_given_back() {
+    in_guest("a_tablet_moves_no_pointer_while_it_plays_and_is_given_back", owned_pads::grabbed);
+}
+
+#[test]
+fn a_tablet_that_leaves_lets_go_and_comes_back() {
+    in_guest("a_tablet_that_leaves_lets_go_and_comes_back", owned_pads::replugged);
+}
+
+#[test]
+fn a_recorded_pen_replays_byte_for_byte() {
+    in_guest("a_recorded_pen_replays_byte_for_byte", owned_pads::recorded);
+}
+
+#[test]
+fn a_cap_of_six_axes_plays() {
+    in_guest("a_cap_of_six_axes_plays", owned_pads::six_axes);
+}
+
+#[test]
+fn a_board_of_four_cells_plays() {
+    in_guest("a_board_of_four_cells_plays", owned_pads::board);
 }
 
 #[test]

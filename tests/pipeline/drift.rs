@@ -79,7 +79,7 @@ impl Drifting {
             let (time_us, status) = (1_000 * self.now_ms, Status::OK);
             let sample = Sample { sequence, time_us, counts, temperature_centi_c: 2_500, status };
             let at = StreamInstant::from_us(time_us);
-            let seen = self.stage.take(at, &sample, &mut self.health, &mut NoProbe);
+            let seen = self.stage.take(at, &sample.into(), &mut self.health, &mut NoProbe);
             let is_ghost = finger.is_none()
                 && matches!(seen, DecodedSample::Contact(Some(contact)) if contact.fz_n > 0.3);
             self.ghost_ms = if is_ghost { self.ghost_ms + PERIOD_MS } else { 0 };

@@ -12,6 +12,7 @@ mod interrupts;
 mod loaded;
 mod macro_keys;
 mod mapping_properties;
+mod other_forms;
 #[path = "../support/played.rs"]
 mod played;
 mod player;

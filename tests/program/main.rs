@@ -31,6 +31,7 @@ mod simulate;
 mod simulate_figures;
 mod simulate_pad;
 mod sizes;
+mod sources;
 #[path = "../support/mod.rs"]
 mod support;
 #[cfg(target_os = "linux")]

@@ -201,6 +201,7 @@ impl Bridge {
             return Ok(Some(Ending::TimeOver));
         }
         self.connection.maintain(now, &self.driver.pipeline)?;
+        self.connection.pause(self.driver.pipeline.phase() == Phase::Paused);
         self.publish(now);
         Ok(None)
     }
@@ -270,6 +271,7 @@ impl Bridge {
         self.driver.call(now, Call::ReleaseAll)?;
         // Threads that write stop with the process.
         self.driver.sink.settle().map_err(BridgeError::Sink)?;
+        self.connection.pause(true);
         signals::stop_process().map_err(BridgeError::Io)?;
         let now = self.driver.clock.now();
         self.driver.call_if_due(now)?;
@@ -412,13 +414,13 @@ impl Bridge {
             return;
         }
         self.snapshot_at = now;
-        let finding = self.driver.pipeline.line_finding();
-        if let Some(line) = self.notifier.line_to_report(now, finding) {
+        let finding = self.connection.finding().or_else(|| self.driver.pipeline.line_finding().copied());
+        if let Some(line) = self.notifier.line_to_report(now, finding.as_ref()) {
             self.host.tell(&line);
         }
         let state = state(&self.driver, &self.connection);
         // What is wrong with the stream says more than what comes of it.
-        if !finding.is_some_and(|finding| state.may_come_of(finding))
+        if !finding.is_some_and(|finding| state.may_come_of(&finding))
             && let Some(state) = self.notifier.state_to_report(now, state)
         {
             self.host.tell(state.sentence());

@@ -9,12 +9,15 @@ use rustix::event::{Timespec, poll};
 
 use crate::transport::Transport;
 use crate::transport::address::PadAddress;
+use crate::transport::evdev::EvdevOpener;
 use crate::transport::fault::{FaultPlan, FaultyLine};
+use crate::transport::lines::LinePort;
 use crate::transport::opener::{Opener, PadError};
 use crate::transport::playback::Playback;
 use crate::transport::virtual_pad::{PadFirmware, VirtualPadPort};
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::reader::{CaptureError, CaptureReader};
+use tactpad_core::source::Lines;
 use tactpad_core::time::HostInstant;
 
 /// A pad whose permissions are not set yet is tried again this often, …
@@ -76,12 +79,27 @@ impl OpenedPad {
     /// [`OpenError::Pad`].
     pub fn device(address: PadAddress, patience: Patience) -> Result<Self, OpenError> {
         let mut opener = Opener::new(address);
-        let pad = match open_when_allowed(&mut opener, patience) {
+        Self::opened_by(move || opener.open(), patience)
+    }
+
+    /// Opens an input device of the system, in the same way.
+    ///
+    /// # Errors
+    /// [`OpenError::Pad`].
+    pub fn input_device(opener: EvdevOpener, patience: Patience) -> Result<Self, OpenError> {
+        Self::opened_by(move || opener.open(), patience)
+    }
+
+    fn opened_by(
+        mut open: impl FnMut() -> Result<Box<dyn Transport>, PadError> + 'static,
+        patience: Patience,
+    ) -> Result<Self, OpenError> {
+        let pad = match open_when_allowed(&mut open, patience) {
             Ok(pad) => Some(pad),
             Err(PadError::NotThere(_) | PadError::Denied(_)) if patience == Patience::Endless => None,
             Err(error) => return Err(OpenError::Pad(error)),
         };
-        Ok(Self { pad, opener: Some(Box::new(move || opener.open())), _virtual_pad: None })
+        Ok(Self { pad, opener: Some(Box::new(open)), _virtual_pad: None })
     }
 
     /// A pad that is not there yet; the bridge looks for it with `opener`.
@@ -111,6 +129,21 @@ impl OpenedPad {
         Ok(Self { pad: Some(pad), ..Self::default() })
     }
 
+    /// The same pad, which prints lines of text, each time it is opened.
+    ///
+    /// # Errors
+    /// The system has no more descriptors.
+    pub fn with_lines(self, lines: &Lines) -> io::Result<Self> {
+        let lines = lines.clone();
+        let read =
+            move |port| -> io::Result<Box<dyn Transport>> { Ok(Box::new(LinePort::new(port, &lines)?)) };
+        let pad = self.pad.map(&read).transpose()?;
+        let opener = self.opener.map(|mut open| -> Reopen {
+            Box::new(move || read(open()?).map_err(|error| PadError::Unusable(error.to_string())))
+        });
+        Ok(Self { pad, opener, ..self })
+    }
+
     /// The same pad on a bad line, each time it is opened. Without a plan it stays as it is.
     ///
     /// # Errors
@@ -128,8 +161,11 @@ impl OpenedPad {
 }
 
 /// Opens the pad. One that was plugged in just now may still be waiting for its permissions: tries for five seconds.
-fn open_when_allowed(opener: &mut Opener, patience: Patience) -> Result<Box<dyn Transport>, PadError> {
-    let mut opened = opener.open();
+fn open_when_allowed(
+    open: &mut impl FnMut() -> Result<Box<dyn Transport>, PadError>,
+    patience: Patience,
+) -> Result<Box<dyn Transport>, PadError> {
+    let mut opened = open();
     let tries = if patience == Patience::Limited { PERMISSION_TRIES } else { 0 };
     for _ in 0..tries {
         if !matches!(opened, Err(PadError::Denied(_))) {
@@ -137,7 +173,7 @@ fn open_when_allowed(opener: &mut Opener, patience: Patience) -> Result<Box<dyn 
         }
         // Lets time pass; nothing plays yet.
         let _ = poll(&mut [], Some(&PERMISSION_WAIT));
-        opened = opener.open();
+        opened = open();
     }
     opened
 }

@@ -9,6 +9,7 @@ use crate::opening::{OpenedPad, Patience};
 use crate::transport::Transport;
 use crate::transport::opener::PadError;
 use tactpad_core::pipeline::Pipeline;
+use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::time::HostInstant;
 
 /// Time limit for the first valid frame, in microseconds: a device that has sent none by then is no pad.
@@ -52,6 +53,8 @@ pub(super) struct PadConnection {
     /// Whether this is still the pad that was opened first.
     is_first: bool,
     bytes_received: u64,
+    /// Whether the pad was told that the player paused.
+    is_paused: bool,
 }
 
 impl PadConnection {
@@ -69,12 +72,18 @@ impl PadConnection {
             restarts: 0,
             is_first: true,
             bytes_received: 0,
+            is_paused: false,
         }
     }
 
     /// The pad, if there is one.
     pub(super) fn pad(&self) -> Option<&dyn Transport> {
         self.opened.pad.as_deref()
+    }
+
+    /// What is wrong with what the pad sends, where that is not frames.
+    pub(super) fn finding(&self) -> Option<LineFinding> {
+        self.opened.pad.as_ref().and_then(|pad| pad.finding())
     }
 
     /// The reason why no pad is connected; `None` while one is.
@@ -121,6 +130,14 @@ impl PadConnection {
     pub(super) fn on_unplugged(&mut self, now: HostInstant) {
         (self.opened.pad, self.no_pad_reason, self.is_first) = (None, NoPadReason::Gone, false);
         self.reopen_at = now.plus_us(REOPEN_US);
+    }
+
+    /// Tells the pad whether the player paused, if that is new to it.
+    pub(super) fn pause(&mut self, is_paused: bool) {
+        if let Some(pad) = self.opened.pad.as_mut().filter(|_| self.is_paused != is_paused) {
+            pad.pause(is_paused);
+            self.is_paused = is_paused;
+        }
     }
 
     /// Closes the pad for good.
@@ -177,7 +194,7 @@ impl PadConnection {
         match self.opened.opener.as_mut().map(|open| open()) {
             Some(Ok(pad)) => {
                 (self.opened.pad, self.opened_at, self.identify_since) = (Some(pad), now, now);
-                self.identify_sent = 0;
+                (self.identify_sent, self.is_paused) = (0, false);
             }
             Some(Err(PadError::Denied(_))) => self.no_pad_reason = NoPadReason::Denied,
             Some(Err(PadError::Unusable(_))) => self.no_pad_reason = NoPadReason::Ambiguous,
@@ -197,6 +214,9 @@ impl PadConnection {
     }
 
     fn why_not_a_pad(&self) -> String {
+        if let Some(finding) = self.finding() {
+            return format!("sent nothing in 3 s that can be played with: {finding}");
+        }
         match self.bytes_received {
             0 => "sent nothing for 3 s: check that the pad is powered and this is its port, or wait for it with --wait"
                 .into(),

@@ -47,7 +47,7 @@ pub(super) fn snapshot(
         contact: pipeline.contact().copied(),
         held: pipeline.held().collect(),
         warning: pipeline.warning(),
-        line: pipeline.line_finding().map(LineStatus::of),
+        line: connection.finding().as_ref().or(pipeline.line_finding()).map(LineStatus::of),
         presses: pipeline.presses(),
         health: BridgeHealth { pipeline: *pipeline.health(), drops: driver.drops() },
         latency_us: driver.latency().percentiles(),

@@ -9,6 +9,7 @@ pub mod network;
 pub mod pad;
 pub mod pipeline;
 pub mod quantity;
+pub mod source;
 pub mod tables;
 pub mod time;
 pub mod toml_text;

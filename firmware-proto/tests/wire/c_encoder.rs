@@ -7,7 +7,9 @@ use std::process::Command as Process;
 use std::sync::OnceLock;
 
 use firmware_proto::ENCODED_MAX;
+use firmware_proto::channels::ChannelSample;
 use firmware_proto::command::{AckResult, Command};
+use firmware_proto::contact::ContactSample;
 use firmware_proto::frame::{Message, WireError};
 use firmware_proto::hid;
 use firmware_proto::link::{CommandReceiver, encode_command, encode_message};
@@ -59,6 +61,24 @@ fn encoding(message: &Message) -> (String, String) {
             let counts = sample.counts.map(|count| count.to_string()).join(" ");
             let Sample { sequence, time_us, temperature_centi_c, status: Status(status), .. } = sample;
             format!("sample {sequence} {time_us} {counts} {temperature_centi_c} {status}")
+        }
+        Message::Channels(sample) => {
+            let counts: String = sample.counts().iter().map(|count| format!(" {count}")).collect();
+            let (channels, Status(status)) = (sample.counts().len(), sample.status());
+            let ChannelSample { sequence, time_us, temperature_centi_c, .. } = sample;
+            format!("channels {sequence} {time_us} {channels} {temperature_centi_c} {status}{counts}")
+        }
+        Message::Contact(sample) => {
+            let ([x, y], [fx, fy, fz]) = (sample.place_um, sample.force_mn);
+            let ContactSample { sequence, time_us, is_touched, has_shear, status: Status(status), .. } =
+                sample;
+            let ContactSample { place_deviation_um, shear_deviation_mn, normal_deviation_mn, .. } = sample;
+            format!(
+                "contact {sequence} {time_us} {x} {y} {fx} {fy} {fz} {place_deviation_um} {shear_deviation_mn} \
+                 {normal_deviation_mn} {} {} {status}",
+                u8::from(*is_touched),
+                u8::from(*has_shear)
+            )
         }
         Message::Identity(identity) => format!(
             "identity ={} {} {} {} {}",
@@ -113,7 +133,7 @@ pub(crate) fn command_frame(command: &Command) -> Vec<u8> {
 #[test]
 fn golden_messages_are_encoded_alike() {
     let calls: Vec<_> = all_messages().iter().map(encoding).collect();
-    assert_eq!(calls.len(), 13);
+    assert_eq!(calls.len(), 21);
     assert_answers("golden", &calls);
 }
 

@@ -2,7 +2,9 @@
 
 use std::array;
 
+use firmware_proto::channels::ChannelSample;
 use firmware_proto::command::{AckResult, Command};
+use firmware_proto::contact::ContactSample;
 use firmware_proto::frame::Message;
 use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::sample::{Sample, Status};
@@ -39,11 +41,34 @@ impl Random {
         Sample {
             sequence: self.spread() as u32,
             time_us: self.spread(),
-            counts: array::from_fn(|_| {
-                (self.spread() as i32).wrapping_mul(if self.byte() & 1 == 0 { 1 } else { -1 })
-            }),
+            counts: array::from_fn(|_| self.number()),
             temperature_centi_c: self.spread() as i16,
             status: Status(self.spread() as u16 & 0x0FFF),
+        }
+    }
+
+    fn number(&mut self) -> i32 {
+        (self.spread() as i32).wrapping_mul(if self.byte() & 1 == 0 { 1 } else { -1 })
+    }
+
+    fn few_channels(&mut self) -> ChannelSample {
+        let counts: Vec<i32> = (0..1 + self.below(8)).map(|_| self.number()).collect();
+        let status = Status(self.spread() as u16);
+        let sample = ChannelSample::new(self.spread() as u32, self.spread(), &counts, status).unwrap();
+        if self.byte() & 1 == 0 { sample } else { sample.with_temperature(self.spread() as i16) }
+    }
+
+    fn contact(&mut self) -> ContactSample {
+        ContactSample {
+            place_um: array::from_fn(|_| self.number()),
+            force_mn: array::from_fn(|_| self.number()),
+            place_deviation_um: self.spread() as u16,
+            shear_deviation_mn: self.spread() as u16,
+            normal_deviation_mn: self.spread() as u16,
+            is_touched: self.byte() & 1 == 0,
+            has_shear: self.byte() & 1 == 0,
+            status: Status(self.spread() as u16 & 0x0C00),
+            ..ContactSample::untouched(self.spread() as u32, self.spread())
         }
     }
 
@@ -60,9 +85,11 @@ impl Random {
 
     pub(crate) fn message(&mut self) -> Message {
         let results = [AckResult::Done, AckResult::Refused, AckResult::Unknown];
-        match self.below(4) {
+        match self.below(6) {
             0 => Message::Identity(self.identity()),
             1 => Message::Acknowledgement { command: self.byte(), result: results[self.below(3)] },
+            2 => Message::Channels(self.few_channels()),
+            3 => Message::Contact(self.contact()),
             _ => Message::Sample(self.sample()),
         }
     }

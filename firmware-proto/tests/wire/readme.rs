@@ -1,6 +1,8 @@
 //! The README's numbers are the crate's.
 
+use firmware_proto::channels::ChannelSample;
 use firmware_proto::command::{AckResult, Command};
+use firmware_proto::contact::ContactSample;
 use firmware_proto::frame::Message;
 use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::{encode_command, encode_message};
@@ -64,12 +66,26 @@ fn worked_examples_are_what_the_encoders_write() {
         rate_hz: 1000,
         picovolts_per_count: 10_000,
     });
+    let few = ChannelSample::new(1000, 12_345_678, &[1520, -35, 20480, 18250], Status::OK).unwrap();
+    let contact = ContactSample {
+        place_um: [12_500, -3_000],
+        force_mn: [0, 0, 1_250],
+        place_deviation_um: 400,
+        normal_deviation_mn: 50,
+        is_touched: true,
+        ..ContactSample::untouched(1000, 12_345_678)
+    };
+    let (few, contact) = (Message::Channels(few), Message::Contact(contact));
     let done = Message::Acknowledgement { command: set_rate.kind(), result: AckResult::Done };
     let command = |command: &Command| body_and_frame(hid::encode_command(command), command_frame(command));
     let message = |message: &Message| body_and_frame(hid::encode_message(message), message_frame(message));
     let expected = [
         [&hid::encode_message(&sample())[1..55]].concat(),
         message_frame(&sample()),
+        [&hid::encode_message(&few)[1..37]].concat(),
+        message_frame(&few),
+        [&hid::encode_message(&contact)[1..45]].concat(),
+        message_frame(&contact),
         command(&identify),
         message(&identity),
         command(&set_rate),
@@ -98,6 +114,8 @@ fn lengths_defaults_and_limits_are_spelled_out() {
     for row in [
         "| `01` | pad to host | sample | 52 | 60 |",
         "| `02` | pad to host | identity | 24 | 32 |",
+        "| `04` | pad to host | sample of *n* channels, 1 to 8 | 18 + 4 *n* | 26 + 4 *n* |",
+        "| `05` | pad to host | contact | 42 | 50 |",
         "2,000,000 baud",
         "100 to 8,000 samples per second",
         "10,000 pV (0.01 µV)",
@@ -107,6 +125,7 @@ fn lengths_defaults_and_limits_are_spelled_out() {
         assert!(README.contains(row), "{row}");
     }
     assert_eq!((Sample::PAYLOAD_LEN, Identity::PAYLOAD_LEN, ENCODED_MAX), (52, 24, 60));
+    assert_eq!((ChannelSample::payload_len(3), ContactSample::PAYLOAD_LEN), (30, 42));
     assert_eq!((DEFAULT_BAUD, RATE_MIN_HZ, RATE_MAX_HZ), (2_000_000, 100, 8_000));
     assert_eq!((DEFAULT_COUNT_BITS, DEFAULT_PICOVOLTS_PER_COUNT), (24, 10_000));
     assert_eq!((hid::VENDOR_ID, hid::PRODUCT_ID), (0x1209, 0x0001));

@@ -3,7 +3,9 @@
 use std::str::FromStr;
 
 use firmware_proto::ENCODED_MAX;
+use firmware_proto::channels::ChannelSample;
 use firmware_proto::command::{AckResult, Command};
+use firmware_proto::contact::ContactSample;
 use firmware_proto::frame::{Message, WireError};
 use firmware_proto::hid;
 use firmware_proto::identity::{Identity, SerialNumber};
@@ -11,6 +13,7 @@ use firmware_proto::link::{CommandReceiver, MessageReceiver, encode_command, enc
 use firmware_proto::sample::{Sample, Status};
 
 const SAMPLES: &str = include_str!("../../vectors/samples.txt");
+const OTHERS: &str = include_str!("../../vectors/few_channels_and_contacts.txt");
 const REPLIES: &str = include_str!("../../vectors/replies.txt");
 const COMMANDS: &str = include_str!("../../vectors/commands.txt");
 const REFUSED: &str = include_str!("../../vectors/refused.txt");
@@ -50,6 +53,10 @@ impl Vector {
         self.field(key).parse().unwrap()
     }
 
+    fn list<T: FromStr<Err: std::fmt::Debug>>(&self, key: &str) -> Vec<T> {
+        self.field(key).split(',').map(|number| number.parse().unwrap()).collect()
+    }
+
     fn hex_number(&self, key: &str) -> u16 {
         u16::from_str_radix(self.field(key).strip_prefix("0x").unwrap(), 16).unwrap()
     }
@@ -57,6 +64,8 @@ impl Vector {
     fn message(&self) -> Message {
         match self.name() {
             "sample" => Message::Sample(self.sample()),
+            "channels" => Message::Channels(self.few_channels()),
+            "contact" => Message::Contact(self.contact()),
             "identity" => Message::Identity(self.identity()),
             "acknowledgement" => Message::Acknowledgement {
                 command: self.hex_number("command") as u8,
@@ -72,12 +81,41 @@ impl Vector {
     }
 
     fn sample(&self) -> Sample {
-        let counts: Vec<i32> = self.field("counts").split(',').map(|count| count.parse().unwrap()).collect();
+        let counts = self.list("counts");
         Sample {
             sequence: self.number("sequence"),
             time_us: self.number("time_us"),
             counts: counts.try_into().unwrap(),
             temperature_centi_c: self.number("temperature_centi_c"),
+            status: Status(self.hex_number("status")),
+        }
+    }
+
+    fn few_channels(&self) -> ChannelSample {
+        let status = Status(self.hex_number("status"));
+        let counts = self.list("counts");
+        let sample =
+            ChannelSample::new(self.number("sequence"), self.number("time_us"), &counts, status).unwrap();
+        if status.temperature_invalid() {
+            sample
+        } else {
+            sample.with_temperature(self.number("temperature_centi_c"))
+        }
+    }
+
+    fn contact(&self) -> ContactSample {
+        let [place_deviation_um, shear_deviation_mn, normal_deviation_mn] =
+            self.list("deviations").try_into().unwrap();
+        ContactSample {
+            sequence: self.number("sequence"),
+            time_us: self.number("time_us"),
+            place_um: self.list("place_um").try_into().unwrap(),
+            force_mn: self.list("force_mn").try_into().unwrap(),
+            place_deviation_um,
+            shear_deviation_mn,
+            normal_deviation_mn,
+            is_touched: self.field("touched") == "1",
+            has_shear: self.field("shear") == "1",
             status: Status(self.hex_number("status")),
         }
     }
@@ -132,12 +170,12 @@ fn vectors(text: &str) -> Vec<Vector> {
 
 /// Every golden message from a pad.
 pub(crate) fn all_messages() -> Vec<Message> {
-    [SAMPLES, REPLIES].into_iter().flat_map(vectors).map(|vector| vector.message()).collect()
+    [SAMPLES, OTHERS, REPLIES].into_iter().flat_map(vectors).map(|vector| vector.message()).collect()
 }
 
 /// Every golden frame from a pad.
 pub(crate) fn message_frames() -> Vec<Vec<u8>> {
-    [SAMPLES, REPLIES].into_iter().flat_map(vectors).map(|vector| vector.frame).collect()
+    [SAMPLES, OTHERS, REPLIES].into_iter().flat_map(vectors).map(|vector| vector.frame).collect()
 }
 
 /// Every golden frame from a host.
@@ -152,8 +190,8 @@ pub(crate) fn refused_frames() -> Vec<Vec<u8>> {
 
 #[test]
 fn messages_both_ways() {
-    let vectors: Vec<_> = [SAMPLES, REPLIES].into_iter().flat_map(vectors).collect();
-    assert_eq!(vectors.len(), 13);
+    let vectors: Vec<_> = [SAMPLES, OTHERS, REPLIES].into_iter().flat_map(vectors).collect();
+    assert_eq!(vectors.len(), 21);
     let mut receiver = MessageReceiver::new();
     for vector in vectors {
         let message = vector.message();
@@ -192,7 +230,7 @@ fn commands_both_ways() {
 #[test]
 fn refused_frames_tell_why_and_leave_the_receiver_sound() {
     let vectors = vectors(REFUSED);
-    assert_eq!(vectors.len(), 18);
+    assert_eq!(vectors.len(), 24);
     let good = &message_frames()[0];
     let mut receiver = MessageReceiver::new();
     for vector in vectors {

@@ -5,6 +5,7 @@ pub(super) mod completions;
 pub(super) mod live;
 pub(super) mod profile;
 pub(super) mod replay;
+pub(super) mod source;
 pub(super) mod tune;
 pub(super) mod weigh;
 
@@ -29,6 +30,8 @@ pub(super) enum Verb {
     Tune(tune::Arguments),
     /// List, show and check profiles.
     Profile(profile::Arguments),
+    /// List, show and check descriptions of pads that are no strain pads.
+    Source(source::Arguments),
     /// Talk to the running bridge.
     #[cfg(target_os = "linux")]
     Ctl(live::ctl::Arguments),
@@ -62,6 +65,7 @@ pub(super) fn run(verb: &Verb, program: impl FnOnce() -> Command) -> Result<(), 
         Verb::Weigh(arguments) => weigh::run(arguments),
         Verb::Tune(arguments) => tune::run(arguments),
         Verb::Profile(arguments) => profile::run(arguments),
+        Verb::Source(arguments) => source::run(arguments),
         #[cfg(target_os = "linux")]
         Verb::Ctl(arguments) => live::ctl::run(arguments),
         #[cfg(target_os = "linux")]

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use firmware_proto::DEFAULT_BAUD;
+use tactpad_core::source::shipped;
 
 /// Where a pad is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,6 +39,15 @@ pub enum PadAddress {
         place: String,
         /// Bits per second of a serial port, not 0.
         baud: u32,
+    },
+    /// A pad that a description tells of.
+    Described {
+        /// The description's name.
+        name: String,
+        /// Where it is: the path of a serial port or an input device; without it the only one that fits.
+        path: Option<String>,
+        /// Bits per second, not 0; without it those of the description.
+        baud: Option<u32>,
     },
     /// A recording in place of a pad.
     Capture {
@@ -106,6 +116,10 @@ impl FromStr for PadAddress {
                 let file = wanted("capture", "the recording's file", rest.unwrap_or(""))?.into();
                 Ok(Self::Capture { file })
             }
+            (name, Some(rest)) if is_name(name) && !rest.is_empty() => described(name, rest),
+            (name, None) if shipped::text(name).is_some() => {
+                Ok(Self::Described { name: name.into(), path: None, baud: None })
+            }
             _ => Err(AddressError::UnknownKind { text: text.into() }),
         }
     }
@@ -118,16 +132,40 @@ fn wanted<'a>(kind: &'static str, wanted: &'static str, rest: &'a str) -> Result
     if rest.is_empty() { Err(AddressError::Incomplete { kind, wanted }) } else { Ok(rest) }
 }
 
+/// Whether a word may be a description's name.
+fn is_name(word: &str) -> bool {
+    let is_plain = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '-';
+    word.starts_with(|letter: char| letter.is_ascii_lowercase())
+        && word.chars().all(is_plain)
+        && word != "virtual"
+}
+
+fn described(name: &str, rest: &str) -> Result<PadAddress, AddressError> {
+    const WANTED: &str = "the port's path, as in load-cells:/dev/ttyUSB0";
+    let (path, baud) = with_rate("load-cells", rest, WANTED)?;
+    Ok(PadAddress::Described { name: name.into(), path: Some(path), baud })
+}
+
 /// A path or place, and the rate that follows the last `@` of its last part.
 fn with_baud(kind: &'static str, rest: &str, what: &'static str) -> Result<(String, u32), AddressError> {
+    let (path, baud) = with_rate(kind, rest, what)?;
+    Ok((path, baud.unwrap_or(DEFAULT_BAUD)))
+}
+
+/// The same; no rate where none is written.
+fn with_rate(
+    kind: &'static str,
+    rest: &str,
+    what: &'static str,
+) -> Result<(String, Option<u32>), AddressError> {
     let Some((path, baud)) = rest.rsplit_once('@').filter(|(_, baud)| !baud.contains('/')) else {
-        return Ok((rest.into(), DEFAULT_BAUD));
+        return Ok((rest.into(), None));
     };
     let path = wanted(kind, what, path)?;
     // Digits only: `parse` would also take a sign.
     let digits = baud.bytes().all(|byte| byte.is_ascii_digit());
     match baud.parse() {
-        Ok(number) if digits && number != 0 => Ok((path.into(), number)),
+        Ok(number) if digits && number != 0 => Ok((path.into(), Some(number))),
         _ => Err(AddressError::BadBaud { kind, path: path.into(), baud: baud.into() }),
     }
 }
@@ -158,6 +196,9 @@ impl fmt::Display for PadAddress {
             Self::Hid { vendor, product, serial_number: Some(number) } => {
                 write!(f, "hid:{vendor:04x}:{product:04x}:{number}")
             }
+            Self::Described { name, path: None, .. } => f.write_str(name),
+            Self::Described { name, path: Some(path), baud: None } => write!(f, "{name}:{path}"),
+            Self::Described { name, path: Some(path), baud: Some(baud) } => write!(f, "{name}:{path}@{baud}"),
             Self::Capture { file } => write!(f, "capture:{}", file.display()),
         }
     }
@@ -169,7 +210,7 @@ impl fmt::Display for AddressError {
             Self::UnknownKind { text } => write!(
                 f,
                 "`{text}` names no pad: write auto[:SERIAL], virtual, serial:PATH[@BAUD], \
-                 hid:VID:PID[:SERIAL], usb:PORT[@BAUD] or capture:FILE"
+                 hid:VID:PID[:SERIAL], usb:PORT[@BAUD], load-cells:PATH[@BAUD], capture:FILE, or a name from `tactpad source list`"
             ),
             Self::Incomplete { kind, wanted } => write!(f, "`{kind}:` lacks {wanted}"),
             Self::BadBaud { kind, path, baud } => write!(
@@ -211,6 +252,10 @@ mod tests {
             ("hid:ABCD:ffff:a:b", "hid:abcd:ffff:a:b"),
             ("usb:1-1.2@9600", "usb:1-1.2@9600"),
             ("usb:1-1.2:1.0@9600", "usb:1-1.2:1.0@9600"),
+            ("tablet", "tablet"),
+            ("tablet:/dev/input/event5", "tablet:/dev/input/event5"),
+            ("load-cells:/dev/ttyUSB0", "load-cells:/dev/ttyUSB0"),
+            ("my-board:/dev/ttyUSB0@57600", "my-board:/dev/ttyUSB0@57600"),
             ("capture:run:1.tpc", "capture:run:1.tpc"),
         ] {
             let address = parse(text).unwrap();

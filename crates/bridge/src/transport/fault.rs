@@ -11,13 +11,14 @@ use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::str::FromStr;
 
 use firmware_proto::command::Command;
-use rustix::event::{PollFd, PollFlags, epoll, poll};
+use rustix::event::epoll;
 use rustix::time::{
     Itimerspec, TimerfdClockId, TimerfdFlags, TimerfdTimerFlags, timerfd_create, timerfd_settime,
 };
+use tactpad_core::pipeline::line_check::LineFinding;
 
 use super::Transport;
-use super::pacing::{limit, monotonic_us};
+use super::pacing::{is_readable, limit, monotonic_us};
 use tactpad_numeric::random::SplitMix64;
 
 /// A delayed frame, and whatever comes behind it, is late by this much: too little for the link to count as silent.
@@ -309,18 +310,20 @@ impl Transport for FaultyLine {
     fn send(&mut self, command: &Command) -> io::Result<()> {
         self.line.send(command)
     }
-}
 
-fn is_readable(fd: BorrowedFd<'_>) -> io::Result<bool> {
-    match poll(&mut [PollFd::from_borrowed_fd(fd, PollFlags::IN)], Some(&limit(0))) {
-        Ok(ready) => Ok(ready > 0),
-        Err(rustix::io::Errno::INTR) => Ok(false),
-        Err(error) => Err(error.into()),
+    fn pause(&mut self, is_paused: bool) {
+        self.line.pause(is_paused);
+    }
+
+    fn finding(&self) -> Option<LineFinding> {
+        self.line.finding()
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use rustix::event::{PollFd, PollFlags, poll};
+
     use super::super::playback::Playback;
     use super::*;
 

@@ -1,8 +1,10 @@
 //! Where pad bytes come from.
 
 pub mod address;
+pub mod evdev;
 pub mod fault;
 pub mod hid;
+pub mod lines;
 pub mod opener;
 mod pacing;
 pub mod pads;
@@ -15,6 +17,7 @@ use std::io;
 use std::os::fd::BorrowedFd;
 
 use firmware_proto::command::Command;
+use tactpad_core::pipeline::line_check::LineFinding;
 
 /// One pad: a stream of serial frames from it, whatever way they came, and commands to it. Reading never blocks for long after `fd` polls readable.
 pub trait Transport {
@@ -32,4 +35,12 @@ pub trait Transport {
     /// # Errors
     /// The command did not get out whole.
     fn send(&mut self, command: &Command) -> io::Result<()>;
+
+    /// The player paused, or went on: a device that was taken from the desktop is given back meanwhile.
+    fn pause(&mut self, _is_paused: bool) {}
+
+    /// What is wrong with what the pad sends, where it is no frames that are sent; the pipeline finds the rest.
+    fn finding(&self) -> Option<LineFinding> {
+        None
+    }
 }

@@ -76,7 +76,7 @@ impl Opener {
                 let pad = choose(hid_pads(*vendor, *product), serial_number.as_deref(), last)?;
                 self.open_remembered(pad)
             }
-            PadAddress::Virtual | PadAddress::Capture { .. } => {
+            PadAddress::Virtual | PadAddress::Described { .. } | PadAddress::Capture { .. } => {
                 Err(PadError::Unusable(format!("{} is no device to open", self.address)))
             }
         }

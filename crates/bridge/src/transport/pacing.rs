@@ -30,6 +30,15 @@ pub(super) fn limit(us: u64) -> Timespec {
     Timespec { tv_sec: seconds, tv_nsec: i64::try_from(ns).unwrap_or(0) }
 }
 
+/// Whether there is something to read, or to be told of the descriptor's end.
+pub(super) fn is_readable(fd: BorrowedFd<'_>) -> io::Result<bool> {
+    match poll(&mut [PollFd::from_borrowed_fd(fd, PollFlags::IN)], Some(&limit(0))) {
+        Ok(ready) => Ok(ready > 0),
+        Err(Errno::INTR) => Ok(false),
+        Err(error) => Err(error.into()),
+    }
+}
+
 /// Tells a thread to stop; every wait of that thread ends at once.
 #[derive(Clone, Debug)]
 pub(super) struct StopSignal(Arc<OwnedFd>);

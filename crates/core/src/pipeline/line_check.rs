@@ -5,9 +5,9 @@
 use std::fmt;
 use std::mem::discriminant;
 
-use firmware_proto::sample::Sample;
 use serde::Serialize;
 
+use crate::pipeline::link::reading::Reading;
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
 use crate::time::HostInstant;
 
@@ -75,6 +75,20 @@ pub enum LineFinding {
         /// What it reads.
         counts: i32,
     },
+    /// Lines of text come, and are not the numbers that were described.
+    NotNumbers,
+    /// Lines of text are longer than any line of numbers.
+    LineTooLong,
+    /// Lines of text have the same number for one channel all the time, and others for the others.
+    CellStands {
+        /// Its index.
+        channel: usize,
+    },
+    /// Lines of text have no number for one channel.
+    NoNumber {
+        /// Its index.
+        channel: usize,
+    },
     /// Frames do not arrive.
     Loss {
         /// The share that is lost or damaged.
@@ -111,6 +125,31 @@ impl fmt::Display for LineFinding {
                     f,
                     "channel {name} reads {counts} all the time while others change: is it connected?"
                 )?;
+            }
+            Self::NotNumbers => {
+                return f.write_str(
+                    "lines come that are not the numbers of the description: check the baud rate, and `columns` in it \
+                     (`tactpad source show`)",
+                );
+            }
+            Self::LineTooLong => {
+                return f.write_str(
+                    "lines come that are longer than 256 bytes: check the baud rate and the sketch",
+                );
+            }
+            Self::CellStands { channel } => {
+                return write!(
+                    f,
+                    "channel {} reads the same all the time while others change, nothing is pressed: check that cell and its wires",
+                    channel + 1
+                );
+            }
+            Self::NoNumber { channel } => {
+                return write!(
+                    f,
+                    "channel {} has no number that can be, nothing is pressed: check that cell and its wires",
+                    channel + 1
+                );
             }
             Self::Loss { percent } => {
                 return write!(
@@ -149,8 +188,8 @@ pub struct LineCheck {
 struct Look {
     begun: HostInstant,
     heard: HostInstant,
-    first: Sample,
-    last: Sample,
+    first: Reading,
+    last: Reading,
     samples: u32,
     widest_us: u64,
     restart_flags: u32,
@@ -182,16 +221,16 @@ impl LineCheck {
 
     /// Takes a sample, as it came, before which `lost` frames are missing, and where `breaks` says that the pad's clock does not go
     /// on. Of a frame that was damaged the number is missing.
-    pub fn sample(&mut self, now: HostInstant, sample: &Sample, lost: u32, breaks: bool) {
+    pub fn sample(&mut self, now: HostInstant, reading: &Reading, lost: u32, breaks: bool) {
         if self.look.as_ref().is_some_and(|look| now.us_since(look.begun) >= LOOK_US) {
             self.close();
         }
-        let look = self.look.get_or_insert_with(|| Look::begin(now, sample));
-        if let Some(largest) = look.wrapped(sample) {
+        let look = self.look.get_or_insert_with(|| Look::begin(now, reading));
+        if let Some(largest) = look.wrapped(reading) {
             // At once: what comes of it must not be told first.
             self.finding = Some(LineFinding::SequenceWraps { largest });
         }
-        look.sample(now, sample);
+        look.sample(now, reading);
         look.lost = look.lost.saturating_add(lost);
         look.clock_breaks += u32::from(breaks);
     }
@@ -224,12 +263,12 @@ impl LineCheck {
 }
 
 impl Look {
-    const fn begin(now: HostInstant, sample: &Sample) -> Self {
+    const fn begin(now: HostInstant, reading: &Reading) -> Self {
         Self {
             begun: now,
             heard: now,
-            first: *sample,
-            last: *sample,
+            first: *reading,
+            last: *reading,
             samples: 0,
             widest_us: 0,
             restart_flags: 0,
@@ -242,32 +281,35 @@ impl Look {
         }
     }
 
-    fn sample(&mut self, now: HostInstant, sample: &Sample) {
+    fn sample(&mut self, now: HostInstant, reading: &Reading) {
         let is_first = self.samples == 0;
         self.samples += 1;
-        self.restart_flags += u32::from(sample.status.restarted());
-        self.sequence_stands += u32::from(!is_first && sample.sequence == self.last.sequence);
-        self.sequence_falls += u32::from(self.falls(sample));
-        self.sequence_largest = self.sequence_largest.max(sample.sequence);
+        self.restart_flags += u32::from(reading.status.restarted());
+        self.sequence_stands += u32::from(!is_first && reading.sequence == self.last.sequence);
+        self.sequence_falls += u32::from(self.falls(reading));
+        self.sequence_largest = self.sequence_largest.max(reading.sequence);
         self.widest_us = self.widest_us.max(now.us_since(self.heard));
-        for (k, has_changed) in self.has_changed.iter_mut().enumerate() {
-            *has_changed |= sample.counts.get(k) != self.first.counts.get(k);
+        // Of other pads than those with nine channels nobody knows which have noise.
+        if let (Some(counts), Some(first)) = (reading.nine_counts(), self.first.nine_counts()) {
+            for (has_changed, (count, first)) in self.has_changed.iter_mut().zip(counts.iter().zip(first)) {
+                *has_changed |= count != first;
+            }
         }
-        (self.heard, self.last) = (now, *sample);
+        (self.heard, self.last) = (now, *reading);
     }
 
     /// Whether the number falls though time goes on: neither an old frame nor a pad that began anew.
-    const fn falls(&self, sample: &Sample) -> bool {
-        !sample.status.restarted()
-            && sample.sequence < self.last.sequence
-            && sample.time_us > self.last.time_us
+    const fn falls(&self, reading: &Reading) -> bool {
+        !reading.status.restarted()
+            && reading.sequence < self.last.sequence
+            && reading.time_us > self.last.time_us
     }
 
     /// The largest number, where the next one is zero and it is all that eight bits or more can count.
-    fn wrapped(&self, sample: &Sample) -> Option<u32> {
+    fn wrapped(&self, reading: &Reading) -> Option<u32> {
         let largest = self.last.sequence;
         let is_full = largest >= u8::MAX.into() && largest & largest.wrapping_add(1) == 0;
-        (is_full && sample.sequence == 0 && self.falls(sample)).then_some(largest)
+        (is_full && reading.sequence == 0 && self.falls(reading)).then_some(largest)
     }
 
     /// The gravest that it shows.
@@ -302,7 +344,12 @@ impl Look {
         } else {
             still.filter(|_| lively >= LIVELY_MIN).map(|channel| LineFinding::ChannelStands {
                 channel,
-                counts: self.last.counts.get(channel).copied().unwrap_or_default(),
+                counts: self
+                    .last
+                    .nine_counts()
+                    .and_then(|counts| counts.get(channel))
+                    .copied()
+                    .unwrap_or_default(),
             })
         }
     }
@@ -310,7 +357,7 @@ impl Look {
 
 #[cfg(test)]
 mod tests {
-    use firmware_proto::sample::Status;
+    use firmware_proto::sample::{Sample, Status};
 
     use super::*;
 
@@ -337,7 +384,7 @@ mod tests {
             let sample = make(Sample { sequence: number as u32, ..sound(at_ms) }, number as u32);
             let now = HostInstant::default().plus_us(1_000 * u64::from(at_ms));
             let is_break = breaks(&sample, number as u32);
-            check.sample(now, &sample, 0, is_break);
+            check.sample(now, &sample.into(), 0, is_break);
         }
         check.finding().copied()
     }
@@ -413,7 +460,12 @@ mod tests {
     fn a_line_that_loses_frames_is_found_and_taken_back() {
         let mut check = LineCheck::new();
         let at = |check: &mut LineCheck, ms: u32, lost: u32| {
-            check.sample(HostInstant::default().plus_us(1_000 * u64::from(ms)), &sound(ms), lost, false);
+            check.sample(
+                HostInstant::default().plus_us(1_000 * u64::from(ms)),
+                &sound(ms).into(),
+                lost,
+                false,
+            );
         };
         (0..3_000).for_each(|ms| at(&mut check, ms, u32::from(ms % 40 == 0)));
         let Some(LineFinding::Loss { percent }) = check.finding() else { panic!("{:?}", check.finding()) };

@@ -30,7 +30,6 @@ pub mod signal;
 pub mod weighing;
 
 use firmware_proto::identity::{Identity, SerialNumber};
-use firmware_proto::sample::Sample;
 
 use crate::pad::weight::Weight;
 use crate::pipeline::call::Call;
@@ -39,6 +38,7 @@ use crate::pipeline::contact::stage::{ContactStage, DecodedSample};
 use crate::pipeline::control::OutputEvent;
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::{Cause, Effect};
+use crate::pipeline::link::reading::Reading;
 use crate::pipeline::link::{Fault, Link, LinkEvent};
 use crate::pipeline::mapping::live::engine::Engine;
 use crate::pipeline::mapping::live::stated::Commands;
@@ -47,10 +47,9 @@ use crate::pipeline::output::ledger::{Edges, Ledger};
 pub use crate::pipeline::phase::Phase;
 pub use crate::pipeline::probe::{NoProbe, PipelineStage, Probe};
 use crate::pipeline::refusal::Refusal;
-use crate::pipeline::signal::Scale;
 use crate::pipeline::weighing::refusal::WeighError;
 use crate::pipeline::weighing::{Weighing, WeighingSample};
-use crate::quantity::Contact;
+use crate::quantity::{CHANNELS, Contact};
 use crate::time::{HostInstant, StreamInstant};
 
 /// After a fault a contact is believed again when the stream has been sound for this long.
@@ -223,6 +222,10 @@ impl Pipeline {
         self.weighing.begin(self.at, weight);
         if !self.is_heard() || self.refusal.is_some() {
             self.weighing.end(Err(WeighError::NoPad));
+        } else if self.strain().is_none() && self.phase == Phase::Playing
+            || self.stage.decoder().channels() != CHANNELS
+        {
+            self.weighing.end(Err(WeighError::NoNineChannels));
         }
     }
 
@@ -242,14 +245,14 @@ impl Pipeline {
 
     fn handle_link<P: Probe>(&mut self, now: HostInstant, event: &LinkEvent, probe: &mut P) {
         match event {
-            LinkEvent::Sample { at, sample, fault } => {
+            LinkEvent::Sample { at, reading, fault } => {
                 probe.mark(PipelineStage::Sample);
                 self.advance(*at);
                 self.health.samples += 1;
                 if let Some(fault) = fault {
                     self.handle_fault(*fault);
                 }
-                self.handle_sample(sample, probe);
+                self.handle_sample(reading, probe);
                 probe.mark(PipelineStage::Events);
             }
             LinkEvent::Fault(fault) => {
@@ -265,9 +268,13 @@ impl Pipeline {
         }
     }
 
-    fn handle_sample<P: Probe>(&mut self, sample: &Sample, probe: &mut P) {
+    fn handle_sample<P: Probe>(&mut self, sample: &Reading, probe: &mut P) {
         let reading = self.stage.take(self.at, sample, &mut self.health, probe);
         self.look_at_weight(reading);
+        let is_suited = !matches!(reading, DecodedSample::Unsuited { .. });
+        if is_suited && matches!(self.refusal, Some(Refusal::OtherChannels { .. })) {
+            self.refusal = None;
+        }
         match reading {
             DecodedSample::Contact(contact) => {
                 self.phase = Phase::Playing;
@@ -279,6 +286,7 @@ impl Pipeline {
                 self.phase = Phase::Faulty;
                 self.interrupt(Cause::Faulty);
             }
+            DecodedSample::Unsuited { channels } => self.refuse_channels(channels),
             DecodedSample::Doubtful => {
                 if self.phase != Phase::Faulty {
                     self.interrupt(Cause::Doubted);
@@ -288,13 +296,22 @@ impl Pipeline {
         }
     }
 
+    /// The pad has another number of channels than the decoder is for.
+    fn refuse_channels(&mut self, channels: usize) {
+        let wanted = self.stage.decoder().channels();
+        self.refusal = self.refusal.or(Some(Refusal::OtherChannels { channels, wanted }));
+        self.interrupt(Cause::Unsuitable);
+    }
+
     fn look_at_weight(&mut self, reading: DecodedSample) {
         let seen = match reading {
             DecodedSample::Contact(contact) => {
                 contact.and(self.stage.strain()).map_or(WeighingSample::Nothing, WeighingSample::Load)
             }
             DecodedSample::Taring | DecodedSample::Loaded => WeighingSample::NoZero,
-            DecodedSample::Faulty | DecodedSample::Doubtful => WeighingSample::Faulty,
+            DecodedSample::Faulty | DecodedSample::Doubtful | DecodedSample::Unsuited { .. } => {
+                WeighingSample::Faulty
+            }
         };
         let ratio = self.weighing.see(self.at, seen, self.stage.gain().factor(), self.stage.decoder());
         if let Some(ratio) = ratio {
@@ -320,7 +337,7 @@ impl Pipeline {
         if self.identity.replace(*identity) == Some(*identity) {
             return;
         }
-        let scale = Scale::of(identity);
+        let scale = self.stage.scale_of(identity);
         self.refusal = if scale.is_some() { None } else { Some(Refusal::Unsuitable(*identity)) };
         let is_other =
             self.pad.replace(identity.serial_number).is_some_and(|pad| pad != identity.serial_number);

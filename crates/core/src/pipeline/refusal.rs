@@ -12,6 +12,13 @@ pub enum Refusal {
     NewerVersion(u8),
     /// It identifies itself with numbers that no pad of ours has: channels, bits or scale.
     Unsuitable(Identity),
+    /// It has another number of channels than its decoder is for.
+    OtherChannels {
+        /// How many it has.
+        channels: usize,
+        /// How many the decoder takes; none if it takes contacts only.
+        wanted: usize,
+    },
 }
 
 impl fmt::Display for Refusal {
@@ -22,6 +29,17 @@ impl fmt::Display for Refusal {
                 "speaks protocol version {version}; this tactpad knows up to {}: update tactpad",
                 firmware_proto::PROTOCOL_VERSION
             ),
+            Self::OtherChannels { channels, wanted: firmware_proto::CHANNELS } => write!(
+                f,
+                "sends {channels} channels, and its decoder takes nine: describe what it has in a file, and name that with --source"
+            ),
+            Self::OtherChannels { channels, wanted } => {
+                let of = if *wanted == 0 { "contacts only".into() } else { format!("{wanted} channels") };
+                write!(
+                    f,
+                    "sends {channels} channels, and its description is of {of}: name another one with --source"
+                )
+            }
             Self::Unsuitable(identity) => write!(
                 f,
                 "says that it has {} channels of {} bits and {} pV per count; a pad has {} channels of 24 to 32 bits: \

@@ -196,6 +196,18 @@ impl<'t> Section<'t> {
         self.list(key, count..=count, &wanted, |value| value.as_str(), findings)
     }
 
+    /// The texts in the list under `key`, one at least and no more than `most`; `None` where it is absent, and where it is no such list
+    /// (reported).
+    pub(crate) fn some_texts(
+        &self,
+        key: &str,
+        most: usize,
+        findings: &mut Findings<'_>,
+    ) -> Option<Vec<Placed<&'t str>>> {
+        let wanted = format!("a list of 1 to {most} texts in quotation marks");
+        self.list(key, 1..=most, &wanted, |value| value.as_str(), findings)
+    }
+
     /// What the words in the list under `key` stand for, which are one at least and no more than there are `words`;
     /// `None` where it is absent, and where it is no such list or has another word (reported).
     pub(crate) fn words<T: Copy>(

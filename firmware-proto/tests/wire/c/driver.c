@@ -2,6 +2,8 @@
  * output, bytes as hex.
  *
  *   sample SEQUENCE TIME_US COUNT x 9 TEMPERATURE STATUS     frame and report
+ *   channels SEQUENCE TIME_US N TEMPERATURE STATUS COUNT x N frame and report
+ *   contact SEQUENCE TIME_US X Y FX FY FZ DEVIATION x 3 TOUCHED SHEAR STATUS   frame and report
  *   identity =SERIAL CHANNELS BITS RATE PICOVOLTS            frame and report
  *   acknowledgement KIND RESULT                              frame and report
  *   bytes HEX                                                what each byte meant to one receiver, if anything
@@ -69,6 +71,38 @@ static void call_sample(const char *rest)
     print_message(frame, tactpad_encode_sample(&sample, frame), report);
 }
 
+static void call_channels(const char *rest)
+{
+    struct tactpad_channels sample;
+    uint8_t frame[TACTPAD_ENCODED_MAX], report[TACTPAD_REPORT_LEN];
+    int used;
+    sscanf(rest, "%" SCNu32 "%" SCNu64 "%" SCNu8 "%" SCNd16 "%" SCNu16 "%n", &sample.sequence, &sample.time_us,
+           &sample.channels, &sample.temperature_centi_c, &sample.status, &used);
+    for (int channel = 0; channel < sample.channels; channel++) {
+        rest += used;
+        sscanf(rest, "%" SCNd32 "%n", &sample.counts[channel], &used);
+    }
+    tactpad_report_channels(&sample, report);
+    print_message(frame, tactpad_encode_channels(&sample, frame), report);
+}
+
+static void call_contact(const char *rest)
+{
+    struct tactpad_contact sample;
+    unsigned touched, shear;
+    uint8_t frame[TACTPAD_ENCODED_MAX], report[TACTPAD_REPORT_LEN];
+    sscanf(rest,
+           "%" SCNu32 "%" SCNu64 "%" SCNd32 "%" SCNd32 "%" SCNd32 "%" SCNd32 "%" SCNd32 "%" SCNu16 "%" SCNu16
+           "%" SCNu16 "%u%u%" SCNu16,
+           &sample.sequence, &sample.time_us, &sample.place_um[0], &sample.place_um[1], &sample.force_mn[0],
+           &sample.force_mn[1], &sample.force_mn[2], &sample.place_deviation_um, &sample.shear_deviation_mn,
+           &sample.normal_deviation_mn, &touched, &shear, &sample.status);
+    sample.is_touched = touched != 0;
+    sample.has_shear = shear != 0;
+    tactpad_report_contact(&sample, report);
+    print_message(frame, tactpad_encode_contact(&sample, frame), report);
+}
+
 static void call_identity(const char *rest)
 {
     struct tactpad_identity identity;
@@ -110,6 +144,10 @@ int main(void)
         const char *rest = line + used;
         if (strcmp(word, "sample") == 0) {
             call_sample(rest);
+        } else if (strcmp(word, "channels") == 0) {
+            call_channels(rest);
+        } else if (strcmp(word, "contact") == 0) {
+            call_contact(rest);
         } else if (strcmp(word, "identity") == 0) {
             call_identity(rest);
         } else if (strcmp(word, "acknowledgement") == 0) {

@@ -22,7 +22,7 @@ pub(crate) fn is_on_desktop() -> bool {
 /// The command line that is meant; `None` if the running bridge's page was opened instead.
 pub(crate) fn command_line() -> Result<Option<Vec<String>>, Failure> {
     use io::ErrorKind::{ConnectionRefused, NotFound};
-    let path = runtime::socket_path()?;
+    let path = runtime::socket_path(None)?;
     match ask(&path, "dashboard") {
         Ok(answer) => open_page(&answer).map(|()| None),
         Err(error) if matches!(error.kind(), NotFound | ConnectionRefused) => {

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use self::answer::{answered, no_answer};
 use super::left_keys;
-use super::runtime::socket_path;
+use super::runtime::{BridgeName, socket_path};
 use super::sound::{Sounds, Which};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
@@ -28,6 +28,9 @@ pub(crate) struct Arguments {
     /// Print the bridge's answer, one JSON document.
     #[arg(long, global = true)]
     json: bool,
+    /// The bridge that was started with this name; without it the one without a name.
+    #[arg(long = "name", id = "bridge", value_name = "NAME", global = true)]
+    bridge: Option<BridgeName>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -85,7 +88,7 @@ enum Action {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let path = socket_path()?;
+    let path = socket_path(arguments.bridge.as_ref())?;
     let request = match &arguments.action {
         Action::Watch { sound } => return watch_presses(&path, *sound),
         Action::Weigh { grams } => return weigh::run(&path, *grams, arguments.json),

@@ -7,7 +7,10 @@ use serde::Serialize;
 
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{print_json, printable, stdout};
+use tactpad::bridge::transport::evdev::found::{FoundDevice, fitting};
 use tactpad::bridge::transport::pads::{Attachment, FoundPad, attached, usb_serial_ports};
+use tactpad::source::read::read;
+use tactpad::source::{Origin, Source, shipped};
 
 /// Arguments of `tactpad devices`.
 #[derive(Debug, Args)]
@@ -27,9 +30,22 @@ struct Listed {
     place: Option<String>,
 }
 
+/// An input device that fits a description inside the program.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+pub(super) struct ListedDevice {
+    pub(super) address: String,
+    pub(super) path: String,
+    /// What it calls itself.
+    pub(super) name: String,
+    /// The description that fits.
+    pub(super) source: String,
+}
+
 #[derive(Serialize)]
 struct DevicesReport {
     pads: Vec<Listed>,
+    /// Input devices that can be played with.
+    input_devices: Vec<ListedDevice>,
     /// Serial ports that do not say that they are a pad, but may be one.
     serial_ports: Vec<String>,
     /// Those of them that are on the USB.
@@ -44,8 +60,27 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ports.into_iter().map(|port| port.port_name).filter(|name| !is_pad(name)).collect();
     let mut usb_ports = listed(&usb_serial_ports());
     usb_ports.retain(|port| serial_ports.contains(&port.path));
-    let report = DevicesReport { pads, serial_ports, usb_ports };
+    let input_devices = input_devices();
+    let report = DevicesReport { pads, input_devices, serial_ports, usb_ports };
     if arguments.json { print_json(&report) } else { Ok(print(&report)?) }
+}
+
+/// The input devices that fit a shipped description, each with the first that does: names come before what others may have, too.
+pub(super) fn input_devices() -> Vec<ListedDevice> {
+    let sources = shipped::names().filter_map(|name| read(shipped::text(name)?).0);
+    let (named, others): (Vec<Source>, Vec<Source>) =
+        sources.partition(|source| matches!(&source.origin, Origin::Evdev(evdev) if !evdev.names.is_empty()));
+    let mut devices: Vec<ListedDevice> = Vec::new();
+    for source in named.iter().chain(&others) {
+        for FoundDevice { path, name } in fitting(source) {
+            let path = path.display().to_string();
+            if devices.iter().all(|device| device.path != path) {
+                let address = format!("{}:{path}", source.name);
+                devices.push(ListedDevice { address, path, name, source: source.name.clone() });
+            }
+        }
+    }
+    devices
 }
 
 fn listed(found: &[FoundPad]) -> Vec<Listed> {
@@ -79,9 +114,16 @@ fn print(report: &DevicesReport) -> io::Result<()> {
             }
         }
     }
+    for device in &report.input_devices {
+        let (address, name) = (printable(&device.address), printable(&device.name));
+        writeln!(out, "input --pad {address}   ({name})")?;
+    }
     for port in &report.serial_ports {
         let place = report.usb_ports.iter().find(|usb| usb.path == *port).map(at).unwrap_or_default();
-        writeln!(out, "port  --pad serial:{port}   (does not say what it is{place})")?;
+        writeln!(
+            out,
+            "port  --pad serial:{port}   (does not say what it is{place}; --pad load-cells:{port} if it prints lines of numbers)"
+        )?;
     }
     Ok(())
 }

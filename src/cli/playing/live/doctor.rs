@@ -10,9 +10,10 @@ use rustix::fs::{Access, access};
 use serde::Serialize;
 use serde_json::Value;
 
+use super::devices::{ListedDevice, input_devices};
 use super::{ctl, left_keys, runtime};
 use crate::cli::failure::{Failure, if_read};
-use crate::cli::printing::written::{print_json, stdout};
+use crate::cli::printing::written::{print_json, printable, stdout};
 use tactpad::bridge::control::ask;
 use tactpad::bridge::sink::uinput;
 use tactpad::bridge::sink::x11::LeftDown;
@@ -97,7 +98,8 @@ pub(super) fn examine() -> DoctorReport {
     let root = Path::new("/");
     let mut checks = vec![check_uinput(), check_rules(root)];
     checks.extend(check_pads(&pads::attached()));
-    let bridge = match runtime::socket_path() {
+    checks.extend(check_input_devices(&input_devices(), unreadable_input_nodes(root)));
+    let bridge = match runtime::socket_path(None) {
         Ok(path) => ask(&path, "status"),
         Err(failure) => Err(io::Error::new(io::ErrorKind::PermissionDenied, failure.sentence())),
     };
@@ -110,6 +112,33 @@ pub(super) fn examine() -> DoctorReport {
     checks.push(check_bridge(&bridge));
     checks.extend(left_keys::found().iter().map(check_left_down));
     DoctorReport { ok: checks.iter().all(|check| check.finding != Finding::Bad), checks }
+}
+
+/// Input devices that can be played with, and whether others may not be read.
+fn check_input_devices(fitting: &[ListedDevice], unreadable: usize) -> Vec<Check> {
+    let found = fitting.iter().map(|device| {
+        Check::good(
+            "input device",
+            printable(&format!("{} plays with --pad {}", device.name, device.address)),
+        )
+    });
+    let hidden = (unreadable > 0).then(|| {
+        Check::note(
+            "input device",
+            format!(
+                "{unreadable} may not be read, a tablet, a touchpad or a board perhaps among them: /proc/bus/input/devices names them, \
+                 and `sudo setfacl -m u:$USER:r /dev/input/eventN` lets you read one until it is unplugged"
+            ),
+        )
+    });
+    found.chain(hidden).collect()
+}
+
+/// How many nodes of input devices this user may not read.
+fn unreadable_input_nodes(root: &Path) -> usize {
+    let nodes = fs::read_dir(root.join("dev/input")).into_iter().flatten().flatten();
+    let events = nodes.filter(|node| node.file_name().to_string_lossy().starts_with("event"));
+    events.filter(|node| access(node.path(), Access::READ_OK).is_err()).count()
 }
 
 fn print(report: &DoctorReport) -> io::Result<()> {
@@ -333,6 +362,21 @@ fn bridge_message(status: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn input_devices_that_play_are_named_and_hidden_ones_are_told_of() {
+        let device = ListedDevice {
+            address: "tablet:/dev/input/event5".into(),
+            path: "/dev/input/event5".into(),
+            name: "Pen".into(),
+            source: "tablet".into(),
+        };
+        let checks = check_input_devices(&[device], 3);
+        assert_eq!(checks[0].message, "Pen plays with --pad tablet:/dev/input/event5");
+        assert!(checks[1].message.starts_with("3 may not be read") && checks[1].message.contains("setfacl"));
+        assert_eq!(check_input_devices(&[], 0).len(), 0);
+        assert_eq!(unreadable_input_nodes(Path::new("/nowhere")), 0);
+    }
 
     #[test]
     fn programs_that_open_ports_are_named() {

@@ -6,6 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::chosen;
+use super::described::{DescribedPad, SourceOption};
 use super::files::Files;
 use super::output::Output;
 use super::playing::{Audience, TerminalHost, microseconds, open_pad, play, requests};
@@ -39,6 +40,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]
+    source: SourceOption,
+    #[command(flatten)]
     device: PadOptions,
     /// A profile's name or file.
     #[arg(long, default_value = "super-mario")]
@@ -67,9 +70,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { pad, profile, output, decoder, json, .. } = arguments;
     output.leaves_stdout(*json)?;
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
-    let decoder = chosen::read(decoder)?;
-    let profile = profile::read(profile, output.choice())?;
-    let opened = open_pad(pad, &arguments.device, profile.profile(), Patience::Limited)?;
+    let described = arguments.source.read(pad, decoder)?;
+    let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
+    let named = profile;
+    let profile = profile::read(named, output.choice())?;
+    if let Some(described) = &described {
+        described.warn_of(named, &profile);
+    }
+    let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), Patience::Limited)?;
     let timing = Timing::default();
     let sink = timing.sink(open_sink(output)?);
     let way = format!("{pad} → {} → {}", decoder.name, sink.describe());

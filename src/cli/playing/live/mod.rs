@@ -8,6 +8,7 @@ mod calibrated;
 mod chosen;
 pub(super) mod ctl;
 pub(super) mod demo;
+mod described;
 pub(super) mod devices;
 mod displays;
 pub(super) mod doctor;

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::described::DescribedPad;
 use super::profile_reader::ProfileReader;
 use super::profile_selection::ProfileSelection;
 use crate::cli::failure::Failure;
@@ -30,9 +31,10 @@ const VIRTUAL_SCRIPT_US: u64 = 3_600_000_000;
 /// The virtual pad's noise is the same each time.
 const VIRTUAL_SEED: u64 = 1;
 
-/// Opens the pad at `address`. The virtual pad is `pad` and plays a script made for `profile`.
+/// Opens the pad at `address`, or the one that is described. The virtual pad is `pad` and plays a script made for `profile`.
 pub(super) fn open_pad(
     address: &PadAddress,
+    described: Option<&DescribedPad>,
     pad: &PadOptions,
     profile: &Profile,
     patience: Patience,
@@ -45,10 +47,12 @@ pub(super) fn open_pad(
                     .into(),
             ));
         }
+        _ if let Some(described) = described => described.open(patience),
         PadAddress::Capture { file } => OpenedPad::capture(file),
         PadAddress::Auto { .. }
         | PadAddress::Hid { .. }
         | PadAddress::Serial { .. }
+        | PadAddress::Described { .. }
         | PadAddress::Usb { .. } => OpenedPad::device(address.clone(), patience),
     };
     opened.map_err(not_opened)

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use clap::Args;
 
+use super::described::{DescribedPad, SourceOption};
 use super::files::{self, Files};
 use super::newest::Newest;
 use super::output::Output;
@@ -36,9 +37,11 @@ pub(crate) struct Arguments {
     /// Write over a file that is there already.
     #[arg(long)]
     force: bool,
-    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], capture:FILE.
+    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], load-cells:PATH[@BAUD], tablet, touchpad, … (source list), capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
+    #[command(flatten)]
+    source: SourceOption,
     #[command(flatten)]
     device: PadOptions,
     /// A profile's name or file; it is kept in the capture, and so is the decoder.
@@ -77,11 +80,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.force {
         files::keep_file(capture, ", or give --force to write over it")?;
     }
-    let decoder = chosen::read(decoder)?;
-    let profile = profile::read(profile, output.choice())?;
+    let described = arguments.source.read(pad, decoder)?;
+    let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
+    let named = profile;
+    let profile = profile::read(named, output.choice())?;
+    if let Some(described) = &described {
+        described.warn_of(named, &profile);
+    }
     let (sink, missing) = output.open_or(|| Newest::default().sink(false))?;
     let patience = patience(&arguments.pad, WaitOption::NotGiven);
-    let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
+    let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), patience)?;
     let opened = opened.with_faults(arguments.faults)?;
     let place = capture.display().to_string();
     let capture = Named::new(create_capture(capture)?, place.clone());
@@ -99,7 +107,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         decoder,
         profile,
         sink,
-        requests: requests(Some(runtime::socket_path()), audience)?,
+        requests: requests(Some(runtime::socket_path(None)), audience)?,
         host: Box::new(host),
         record: Some(Box::new(capture)),
         observers: Vec::new(),

@@ -5,6 +5,7 @@ use std::io;
 use clap::Args;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
+use super::described::{DescribedPad, SourceOption};
 use super::displays::DisplayOptions;
 use super::files::Files;
 use super::follower;
@@ -13,6 +14,7 @@ use super::newest::Newest;
 use super::output::Output;
 use super::playing::{Audience, TerminalHost, WaitOption, microseconds, open_pad, patience, play, requests};
 use super::profile_selection;
+use super::runtime::BridgeName;
 use super::screen::Screen;
 use super::{chosen, runtime};
 use crate::cli::failure::Failure;
@@ -34,12 +36,14 @@ use tactpad::bridge::transport::fault::FaultPlan;
     `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on. It ends with its \
     terminal, unless it was started with nohup; where it has none, SIGHUP reads the profile again.")]
 pub(crate) struct Arguments {
-    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], virtual, capture:FILE.
+    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], load-cells:PATH[@BAUD], tablet, touchpad, … (source list), virtual, capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
     /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.
     #[arg(long)]
     wait: bool,
+    #[command(flatten)]
+    source: SourceOption,
     #[command(flatten)]
     device: PadOptions,
     /// A profile's name or file; it is read again when it is changed. Or auto[:NAME]: the one whose [[program]] is in front, else NAME.
@@ -61,6 +65,9 @@ pub(crate) struct Arguments {
     /// It is kept for pads with a serial number whose decoder calibrate or adapt made.
     #[arg(long, value_name = "WHETHER", default_value = "yes")]
     keep_play: KeepPlay,
+    /// A name for this bridge where several play at once, each on its pad: `tactpad ctl --name NAME` talks to it.
+    #[arg(long, value_name = "NAME")]
+    name: Option<BridgeName>,
     /// End after this many seconds.
     #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
@@ -71,17 +78,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { pad, profile, output, decoder, .. } = arguments;
     let profile = profile_selection::first(profile);
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
-    let decoder = chosen::read(decoder)?;
+    let described = arguments.source.read(pad, decoder)?;
+    let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
     let audience = audience(output);
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let selection = host.selection();
-    let profile = profile::read(profile, output.choice())?;
+    let named = profile;
+    let profile = profile::read(named, output.choice())?;
+    if let Some(described) = &described {
+        described.warn_of(named, &profile);
+    }
     let patience =
         patience(&arguments.pad, if arguments.wait { WaitOption::Given } else { WaitOption::NotGiven });
     let is_shown = audience == Audience::Nobody;
     let newest = Newest::default();
     let (sink, missing) = output.open_or(|| newest.sink(is_shown))?;
-    let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
+    let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), patience)?;
     let opened = opened.with_faults(arguments.faults)?;
     let name = &profile.profile().name;
     let title = format!("{} → {} → {name} → {}", arguments.pad, decoder.name, sink.describe());
@@ -91,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         say(missing);
     }
     audience.tell(&title);
-    let requests = requests(Some(runtime::socket_path()), audience)?;
+    let requests = requests(Some(runtime::socket_path(arguments.name.as_ref())), audience)?;
     let mut prepared = arguments.shown.prepare(&requests, &selection, output.choice())?;
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));

@@ -4,17 +4,34 @@ use std::env;
 use std::fs::{self, DirBuilder};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use rustix::process::getuid;
 
 use crate::cli::failure::Failure;
 
-/// Where a bridge listens.
+/// The name of one of several bridges on a machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct BridgeName(String);
+
+impl FromStr for BridgeName {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_');
+        let is_name = (1..=32).contains(&text.len()) && text.chars().all(is_plain);
+        is_name.then(|| Self(text.to_owned())).ok_or("take 1 to 32 letters, digits, - and _")
+    }
+}
+
+/// Where a bridge listens, of this name if it has one.
 ///
 /// # Errors
 /// See [`folder`].
-pub(super) fn socket_path() -> Result<PathBuf, Failure> {
-    folder().map(|folder| folder.join("tactpad.sock"))
+pub(super) fn socket_path(name: Option<&BridgeName>) -> Result<PathBuf, Failure> {
+    let file =
+        name.map_or_else(|| "tactpad.sock".to_owned(), |BridgeName(name)| format!("tactpad-{name}.sock"));
+    folder().map(|folder| folder.join(file))
 }
 
 /// The user's runtime folder, else a folder of the user's own among the temporary files.

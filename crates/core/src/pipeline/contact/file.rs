@@ -77,7 +77,7 @@ impl Decoder {
                 push_text(&mut body, neighbours.zero.name().as_bytes());
                 push_neighbours(&mut body, neighbours);
             }
-            Method::Statics(_) | Method::Network(_) => return None,
+            Method::Statics(_) | Method::Balance(_) | Method::Told | Method::Network(_) => return None,
             #[cfg(feature = "foreign-onnx")]
             Method::Foreign(_) => return None,
         }

@@ -1,5 +1,6 @@
 //! Where a contact is and how hard it presses, from strain.
 
+pub mod balance;
 pub mod field_error;
 pub mod file;
 pub mod inverse;
@@ -9,6 +10,7 @@ pub mod read;
 pub mod regression;
 pub mod stage;
 pub mod statics;
+pub mod told;
 pub mod touch;
 pub mod uncertainty;
 pub mod watch;
@@ -17,11 +19,13 @@ pub mod watch;
 use crate::network::foreign::Foreign;
 use crate::network::{Network, OUTPUTS, Zero};
 use crate::pipeline::compensation::Compensation;
+use crate::pipeline::contact::balance::Balance;
 use crate::pipeline::contact::inverse::{ContactFit, Inverse};
 use crate::pipeline::contact::neighbours::Neighbours;
 use crate::pipeline::contact::regression::{Regression, Target};
 use crate::pipeline::contact::statics::Statics;
-use crate::quantity::{Contact, Strain};
+use crate::pipeline::signal::Scale;
+use crate::quantity::{CHANNELS, Contact, Strain};
 
 /// A way from strain to a contact, and what is known of the pad beside it.
 #[derive(Clone, Debug)]
@@ -39,6 +43,10 @@ pub struct Decoder {
 pub enum Method {
     /// The balance of forces and moments, with five numbers.
     Statics(Statics),
+    /// The balance of forces on load cells, or on a sensor of six axes.
+    Balance(Box<Balance>),
+    /// None: the pad sends contacts, and nothing else is decoded.
+    Told,
     /// The pad's own field, inverted.
     Inverse(Box<Inverse>),
     /// Linear functions of the channels.
@@ -62,6 +70,12 @@ impl From<Method> for Decoder {
 impl From<Statics> for Decoder {
     fn from(statics: Statics) -> Self {
         Method::Statics(statics).into()
+    }
+}
+
+impl From<Balance> for Decoder {
+    fn from(balance: Balance) -> Self {
+        Method::Balance(Box::new(balance)).into()
     }
 }
 
@@ -107,6 +121,8 @@ impl Decoder {
     pub fn name(&self) -> &'static str {
         match &self.method {
             Method::Statics(_) => "statics",
+            Method::Balance(_) => "balance",
+            Method::Told => "contacts",
             Method::Inverse(_) => "inverse",
             Method::Regression(regression) if regression.target == Target::Wrench => "wrench",
             Method::Regression(_) => "linear",
@@ -126,7 +142,24 @@ impl Decoder {
             Method::Foreign(network) => network.zero,
             Method::Regression(regression) => regression.zero,
             Method::Neighbours(neighbours) => neighbours.zero,
-            Method::Statics(_) | Method::Inverse(_) => Zero::Tared,
+            Method::Statics(_) | Method::Balance(_) | Method::Told | Method::Inverse(_) => Zero::Tared,
+        }
+    }
+
+    /// How many channels it takes: nine but for pads that have fewer, and none where the pad decodes on its own.
+    pub const fn channels(&self) -> usize {
+        match &self.method {
+            Method::Balance(balance) => balance.channels(),
+            Method::Told => 0,
+            _ => CHANNELS,
+        }
+    }
+
+    /// What a count is worth, where it is the decoder that knows it and not the pad.
+    pub const fn scale(&self) -> Option<Scale> {
+        match &self.method {
+            Method::Balance(balance) => Some(balance.scale()),
+            _ => None,
         }
     }
 
@@ -166,6 +199,8 @@ impl Decoder {
     pub fn decode(&self, strain: &Strain) -> Contact {
         match &self.method {
             Method::Statics(statics) => statics.decode(strain),
+            Method::Balance(balance) => balance.decode(strain),
+            Method::Told => Contact::default(),
             Method::Inverse(inverse) => inverse.decode(strain),
             Method::Regression(regression) => regression.decode(strain),
             Method::Neighbours(neighbours) => neighbours.decode(strain),
@@ -177,8 +212,10 @@ impl Decoder {
 
     /// The normal force of a difference of strains, which may be a pull, or a press here less one there.
     pub fn load_n(&self, strain: &Strain) -> f32 {
-        if let Method::Inverse(inverse) = &self.method {
-            return inverse.load_n(strain);
+        match &self.method {
+            Method::Inverse(inverse) => return inverse.load_n(strain),
+            Method::Balance(balance) => return balance.load_n(strain),
+            _ => {}
         }
         // A network has learnt presses only, but a pull is a press the other way round.
         let pulled = Strain { uv: strain.uv.map(|uv| -uv) };

@@ -10,6 +10,7 @@ use super::{Decoder, Method};
 use crate::network::foreign::Foreign;
 use crate::network::onnx::error::OnnxError;
 use crate::network::{Network, Zero, onnx};
+use crate::source;
 
 /// How files of the program's own begin, of whatever version.
 const OWN: &[u8] = b"tactpad decoder ";
@@ -24,6 +25,8 @@ pub enum Unreadable {
     Network(OnnxError),
     /// Numbers of statics that are incomplete or impossible.
     Statics(ModelError),
+    /// A description of a pad with mistakes: the first, with its line.
+    Description(String),
     /// A decoder that learnt raw channels, where the zero is taken off them.
     TakesRaw,
     /// A decoder that is made to be compared, not to play: its name, and why.
@@ -37,6 +40,9 @@ impl fmt::Display for Unreadable {
             Self::Network(error) => error.fmt(f),
             Self::Statics(error) => {
                 write!(f, "{error}; a decoder is what adapt or train wrote, or has the form of models/statics.toml")
+            }
+            Self::Description(mistake) => {
+                write!(f, "{mistake}; `tactpad source check` tells all that is wrong with it")
             }
             Self::TakesRaw => f.write_str(
                 "it learnt channels with the pad's offset in them, and in play the zero is taken off; adapt it to a table \
@@ -62,6 +68,7 @@ pub fn decoder(bytes: &[u8]) -> Result<Decoder, Unreadable> {
         return Decoder::from_bytes(bytes).map(|(decoder, _)| decoder).map_err(Unreadable::Own);
     }
     match text(bytes) {
+        Some(text) if source::read::is_meant(text) => described(text),
         Some(text) => statics(text).map_err(Unreadable::Statics),
         None => network(bytes).map_err(Unreadable::Network),
     }
@@ -94,6 +101,15 @@ pub fn playing(bytes: &[u8]) -> Result<Decoder, Unreadable> {
 fn text(bytes: &[u8]) -> Option<&str> {
     let is_written = |c: char| !c.is_control() || c.is_whitespace();
     std::str::from_utf8(bytes).ok().filter(|text| !text.is_empty() && text.chars().all(is_written))
+}
+
+/// The decoder of a described pad.
+fn described(text: &str) -> Result<Decoder, Unreadable> {
+    let (source, found) = source::read::read(text);
+    source.and_then(|source| source.decoder()).ok_or_else(|| {
+        let first = found.first().map(|found| format!("line {}: {}", found.line, found.message));
+        Unreadable::Description(first.unwrap_or_else(|| "it describes no pad that can be played with".into()))
+    })
 }
 
 fn statics(text: &str) -> Result<Decoder, ModelError> {

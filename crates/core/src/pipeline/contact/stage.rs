@@ -1,16 +1,21 @@
 //! The contact stage: from a sample to the contact that it shows, and what is left of it all when something interrupts.
 
+use firmware_proto::channels::ChannelSample;
+use firmware_proto::contact::ContactSample;
+use firmware_proto::identity::Identity;
 use firmware_proto::sample::Sample;
 
-use super::Decoder;
+use super::told;
 use super::touch::{Touch, TouchState};
 use super::uncertainty::Estimate;
 use super::watch::{Doubt, Warning, Watch, load_without_stray_n};
+use super::{Decoder, Method};
 use crate::pipeline::compensation::gain::CommonGain;
 use crate::pipeline::compensation::memory::Memory;
 use crate::pipeline::compensation::thermometer::Thermometer;
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::{Cause, Effect, Effects};
+use crate::pipeline::link::reading::{Measured, Reading};
 use crate::pipeline::probe::{PipelineStage, Probe};
 use crate::pipeline::signal::{Conditioned, Loads, PadState, Scale, Signal};
 use crate::quantity::{CHANNELS, Contact, Strain};
@@ -29,6 +34,11 @@ pub enum DecodedSample {
     Faulty,
     /// Nothing can be said: what the channels read together is no finger.
     Doubtful,
+    /// Nothing can be said: the decoder is for a pad with another number of channels, which is this one's.
+    Unsuited {
+        /// How many channels the pad has.
+        channels: usize,
+    },
 }
 
 /// Signal, compensation, decoder, touch and watch:
@@ -53,13 +63,19 @@ pub struct ContactStage {
     strain: Option<Strain>,
     /// Raw channels of the last sample, µV.
     raw_uv: [f64; CHANNELS],
+    /// What the last sample told, if the pad decodes on its own.
+    told: Option<Estimate>,
 }
 
 impl ContactStage {
     /// A stage that has seen nothing: it measures its zero first. `filter_samples` is the mean filter's window.
     pub fn new(decoder: Decoder, filter_samples: usize) -> Self {
         Self {
-            signal: Signal::new(filter_samples),
+            signal: Signal::new(
+                decoder.channels(),
+                decoder.scale().unwrap_or_else(Scale::unidentified),
+                filter_samples,
+            ),
             gain: CommonGain::ONE,
             thermometer: Thermometer::of(decoder.compensation.thermal),
             memory: Memory::of(&decoder.compensation),
@@ -68,6 +84,7 @@ impl ContactStage {
             decoder,
             strain: None,
             raw_uv: [0.0; CHANNELS],
+            told: None,
         }
     }
 
@@ -83,7 +100,23 @@ impl ContactStage {
 
     /// The contact of the last sample with its uncertainty, if the decoder knows. Decodes it anew.
     pub fn estimate(&self) -> Option<Estimate> {
-        self.decoder.inverse()?.estimate(self.strain.as_ref()?)
+        match &self.decoder.method {
+            _ if self.told.is_some() => self.told,
+            Method::Inverse(inverse) => inverse.estimate(self.strain.as_ref()?),
+            Method::Balance(balance) => balance.estimate(self.strain.as_ref()?),
+            _ => None,
+        }
+    }
+
+    /// Scale of a pad that identifies itself so; `None` for a pad that cannot be played with by this decoder. One that decodes on its
+    /// own has none, and any will do.
+    pub fn scale_of(&self, identity: &Identity) -> Option<Scale> {
+        let channels = usize::from(identity.channels);
+        match self.decoder.scale() {
+            _ if channels == 0 => Some(self.signal.scale()),
+            Some(scale) => (channels == self.decoder.channels()).then_some(scale),
+            None => Scale::of(identity).filter(|_| channels == self.decoder.channels()),
+        }
     }
 
     /// Warning about the touch at hand or the last one; only the inverse decoder tells it.
@@ -118,8 +151,51 @@ impl ContactStage {
         self.signal.set_scale(scale)
     }
 
-    /// Takes the sample at `at`. Where it shows no contact, the caller tells the interruption.
+    /// Takes the reading at `at`. Where it shows no contact, the caller tells the interruption.
     pub fn take<P: Probe>(
+        &mut self,
+        at: StreamInstant,
+        reading: &Reading,
+        health: &mut Health,
+        probe: &mut P,
+    ) -> DecodedSample {
+        self.told = None;
+        let channels = self.decoder.channels();
+        match &reading.measured {
+            Measured::Nine(sample) if channels == CHANNELS => self.take_sample(at, sample, health, probe),
+            Measured::Few(few) if channels == few.counts().len() => {
+                self.take_sample(at, &with_zeros(few), health, probe)
+            }
+            Measured::Contact(sample) => self.take_contact(sample, health, probe),
+            Measured::Nine(_) => self.unsuited(CHANNELS),
+            Measured::Few(few) => self.unsuited(few.counts().len()),
+        }
+    }
+
+    fn unsuited(&mut self, channels: usize) -> DecodedSample {
+        self.strain = None;
+        DecodedSample::Unsuited { channels }
+    }
+
+    /// Takes a contact that the pad decoded.
+    fn take_contact<P: Probe>(
+        &mut self,
+        sample: &ContactSample,
+        health: &mut Health,
+        probe: &mut P,
+    ) -> DecodedSample {
+        self.strain = None;
+        if sample.status.supply_fault() {
+            health.supply_faults += 1;
+            return DecodedSample::Faulty;
+        }
+        self.told = told::estimate(sample);
+        probe.mark(PipelineStage::Contact);
+        DecodedSample::Contact(self.told.map(|told| told.contact))
+    }
+
+    /// Takes a sample of channels.
+    fn take_sample<P: Probe>(
         &mut self,
         at: StreamInstant,
         sample: &Sample,
@@ -216,4 +292,12 @@ impl ContactStage {
         self.touch.interrupt(touch);
         self.watch.interrupt(watch, self.decoder.inverse());
     }
+}
+
+/// The same with as many channels as all stages have: those that the pad has not are zero.
+fn with_zeros(few: &ChannelSample) -> Sample {
+    let mut counts = [0; CHANNELS];
+    counts.iter_mut().zip(few.counts()).for_each(|(to, count)| *to = *count);
+    let ChannelSample { sequence, time_us, temperature_centi_c, .. } = *few;
+    Sample { sequence, time_us, counts, temperature_centi_c, status: few.status() }
 }

@@ -5,17 +5,18 @@
 
 mod clock;
 mod order;
+pub mod reading;
 
 use firmware_proto::frame::{Message, WireError};
 use firmware_proto::identity::Identity;
 use firmware_proto::link::MessageReceiver;
-use firmware_proto::sample::Sample;
 
 use crate::pipeline::health::Health;
 use crate::pipeline::line_check::{LineCheck, LineFinding};
 use crate::time::{HostInstant, StreamInstant};
 use clock::StreamClock;
 use order::{OtherRun, Run, SequenceStep};
+use reading::Reading;
 
 /// Without a sample for this long the link counts as lost. Everything is released then, well inside 100 ms.
 pub const SILENCE_MAX_US: u64 = 80_000;
@@ -52,7 +53,7 @@ pub enum LinkEvent {
         /// Stream time of the sample; never earlier than the one before.
         at: StreamInstant,
         /// What the pad sent.
-        sample: Sample,
+        reading: Reading,
         /// What was wrong between the last sample and this one.
         fault: Option<Fault>,
     },
@@ -106,7 +107,9 @@ impl Link {
             self.newer = None;
         }
         match message {
-            Ok(Message::Sample(sample)) => Some(self.order(now, sample, health)),
+            Ok(Message::Sample(sample)) => Some(self.order(now, sample.into(), health)),
+            Ok(Message::Channels(sample)) => Some(self.order(now, sample.into(), health)),
+            Ok(Message::Contact(sample)) => Some(self.order(now, sample.into(), health)),
             Ok(Message::Identity(identity)) => Some(LinkEvent::Identity(identity)),
             Ok(Message::Acknowledgement { .. }) => None,
             Err(WireError::NewerVersion(version)) => {
@@ -171,18 +174,18 @@ impl Link {
         self.check.finding()
     }
 
-    fn order(&mut self, now: HostInstant, sample: Sample, health: &mut Health) -> LinkEvent {
+    fn order(&mut self, now: HostInstant, reading: Reading, health: &mut Health) -> LinkEvent {
         let lost_before = health.frames_lost;
-        let event = self.ordered(now, sample, health);
+        let event = self.ordered(now, reading, health);
         let lost = u32::try_from(health.frames_lost - lost_before).unwrap_or(u32::MAX);
         let breaks =
             matches!(event, LinkEvent::Sample { fault: Some(Fault::TimeJump | Fault::Restarted), .. });
-        self.check.sample(now, &sample, lost, breaks);
+        self.check.sample(now, &reading, lost, breaks);
         event
     }
 
-    fn ordered(&mut self, now: HostInstant, sample: Sample, health: &mut Health) -> LinkEvent {
-        let fault = match self.step(now, &sample) {
+    fn ordered(&mut self, now: HostInstant, reading: Reading, health: &mut Health) -> LinkEvent {
+        let fault = match self.step(now, &reading) {
             SequenceStep::Next => None,
             SequenceStep::Again => {
                 health.frames_repeated += 1;
@@ -190,13 +193,13 @@ impl Link {
             }
             SequenceStep::Skipped(frames) => {
                 health.frames_lost += u64::from(frames);
-                let since = |run: &Run| sample.time_us.wrapping_sub(run.last.time_us);
+                let since = |run: &Run| reading.time_us.wrapping_sub(run.last.time_us);
                 let gap_us = self.run.as_ref().map_or(u64::MAX, since);
                 (gap_us > BRIDGED_GAP_US || now.us_since(self.clock.heard) > BRIDGED_GAP_US)
                     .then_some(Fault::Lost)
             }
             SequenceStep::Apart => {
-                let run = OtherRun::with(self.other, &sample);
+                let run = OtherRun::with(self.other, &reading);
                 if !run.is_believed() {
                     self.other = Some(run);
                     health.frames_repeated += 1;
@@ -214,23 +217,23 @@ impl Link {
         };
         let goes_on = fault != Some(Fault::Restarted);
         let run = self.run.as_ref().filter(|_| goes_on);
-        let delay_us = run.map_or(0, |run| run.delay_us(now, &sample));
-        let smooth = self.clock.accept(now, sample.time_us, delay_us, run.is_some() && !self.is_silent);
+        let delay_us = run.map_or(0, |run| run.delay_us(now, &reading));
+        let smooth = self.clock.accept(now, reading.time_us, delay_us, run.is_some() && !self.is_silent);
         match &mut self.run {
-            Some(run) if goes_on => run.take(now, &sample),
-            _ => self.run = Some(Run::beginning(now, &sample)),
+            Some(run) if goes_on => run.take(now, &reading),
+            _ => self.run = Some(Run::beginning(now, &reading)),
         }
         (self.is_silent, self.other) = (false, None);
         let fault = if smooth { fault } else { jumped(fault, health) };
-        LinkEvent::Sample { at: self.clock.last, sample, fault }
+        LinkEvent::Sample { at: self.clock.last, reading, fault }
     }
 
     /// How this sample follows what was heard last.
-    fn step(&self, now: HostInstant, sample: &Sample) -> SequenceStep {
+    fn step(&self, now: HostInstant, reading: &Reading) -> SequenceStep {
         match &self.run {
-            Some(run) if self.is_silent => run.step_over_silence(now, sample),
-            Some(run) => run.step(now, sample),
-            None if self.clock.set && sample.status.restarted() => SequenceStep::Anew,
+            Some(run) if self.is_silent => run.step_over_silence(now, reading),
+            Some(run) => run.step(now, reading),
+            None if self.clock.set && reading.status.restarted() => SequenceStep::Anew,
             None => SequenceStep::Next,
         }
     }
@@ -245,7 +248,7 @@ fn jumped(fault: Option<Fault>, health: &mut Health) -> Option<Fault> {
 #[cfg(test)]
 mod tests {
     use firmware_proto::link::encode_message;
-    use firmware_proto::sample::Status;
+    use firmware_proto::sample::{Sample, Status};
     use firmware_proto::{CHANNELS, ENCODED_MAX};
 
     use super::clock::DEVICE_TIME_MAX_US;

@@ -1,8 +1,7 @@
 //! How samples follow one another by number and time, and when one that does not shows that the pad began anew.
 
-use firmware_proto::sample::Sample;
-
 use super::clock::GAP_MAX_US;
+use super::reading::Reading;
 use crate::time::HostInstant;
 
 /// No pad samples faster than once in so many microseconds.
@@ -40,26 +39,26 @@ pub(super) enum SequenceStep {
 #[derive(Clone, Debug)]
 pub(super) struct Run {
     /// The newest frames, each in the place of its number.
-    newest: [Option<Sample>; KEPT],
-    pub(super) last: Sample,
+    newest: [Option<Reading>; KEPT],
+    pub(super) last: Reading,
     /// When a sample was heard without delay, and the pad's time then. Those that a host took late, or a pad kept, come after it.
     prompt: (HostInstant, u64),
 }
 
 impl Run {
     /// It begins with this sample, heard at `now`.
-    pub(super) const fn beginning(now: HostInstant, first: &Sample) -> Self {
+    pub(super) const fn beginning(now: HostInstant, first: &Reading) -> Self {
         let mut run = Self { newest: [None; KEPT], last: *first, prompt: (now, first.time_us) };
         run.newest[Self::place(first)] = Some(*first);
         run
     }
 
-    const fn place(sample: &Sample) -> usize {
+    const fn place(sample: &Reading) -> usize {
         sample.sequence as usize % KEPT
     }
 
     /// Takes its next sample, heard at `now`.
-    pub(super) fn take(&mut self, now: HostInstant, next: &Sample) {
+    pub(super) fn take(&mut self, now: HostInstant, next: &Reading) {
         if !goes_on_closely(&self.last, next) || self.delay_us(now, next) <= DELAY_MAX_US {
             self.prompt = (now, next.time_us);
         }
@@ -68,13 +67,13 @@ impl Run {
     }
 
     /// By how much `next`, heard at `now`, comes later than a sample that came without delay.
-    pub(super) fn delay_us(&self, now: HostInstant, next: &Sample) -> u64 {
+    pub(super) fn delay_us(&self, now: HostInstant, next: &Reading) -> u64 {
         let (heard, time_us) = self.prompt;
         now.us_since(heard).saturating_sub(next.time_us.saturating_sub(time_us))
     }
 
     /// The step to `next`, heard at `now`.
-    pub(super) fn step(&self, now: HostInstant, next: &Sample) -> SequenceStep {
+    pub(super) fn step(&self, now: HostInstant, next: &Reading) -> SequenceStep {
         if self.has(next) {
             return SequenceStep::Again;
         }
@@ -95,7 +94,7 @@ impl Run {
 
     /// The step over a silence to `next`, heard at `now`. Nobody counts what is missing. The samples of a pad that kept them meanwhile
     /// come late, and go on by number and time from where it fell silent.
-    pub(super) fn step_over_silence(&self, now: HostInstant, next: &Sample) -> SequenceStep {
+    pub(super) fn step_over_silence(&self, now: HostInstant, next: &Reading) -> SequenceStep {
         if self.has(next) {
             SequenceStep::Again
         } else if next.status.restarted() {
@@ -111,7 +110,7 @@ impl Run {
 
     /// Whether this very frame is one of the newest, or one of their time that was never heard, which comes late. A pad that began
     /// anew a moment ago sends the same numbers with other contents.
-    fn has(&self, frame: &Sample) -> bool {
+    fn has(&self, frame: &Reading) -> bool {
         let behind = self.last.sequence.wrapping_sub(frame.sequence);
         match &self.newest[Self::place(frame)] {
             Some(kept) if kept.sequence == frame.sequence => kept == frame,
@@ -125,7 +124,7 @@ impl Run {
     /// Whether `next`, heard at `now`, can be of this run after a gap. A run that began anew shows another time than has passed, or a
     /// number that is behind, or farther ahead than samples fit into that time. So does a pad that ran while the host slept, whose
     /// zero is as old as that.
-    fn goes_on_after_gap(&self, now: HostInstant, next: &Sample) -> bool {
+    fn goes_on_after_gap(&self, now: HostInstant, next: &Reading) -> bool {
         let (heard, time_us) = self.prompt;
         let passed_us = now.us_since(heard);
         let is_in_time = next
@@ -140,7 +139,7 @@ impl Run {
 }
 
 /// Whether `next` is one of the next samples after `last`, by number and by the pad's clock.
-fn goes_on_closely(last: &Sample, next: &Sample) -> bool {
+fn goes_on_closely(last: &Reading, next: &Reading) -> bool {
     let ahead = next.sequence.wrapping_sub(last.sequence);
     let shown_us = next.time_us.wrapping_sub(last.time_us);
     (1..=SKIPPED_MAX).contains(&ahead) && (1..=GAP_MAX_US).contains(&shown_us)
@@ -149,13 +148,13 @@ fn goes_on_closely(last: &Sample, next: &Sample) -> bool {
 /// Frames that do not go on from the last sample, but from one another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OtherRun {
-    newest: Sample,
+    newest: Reading,
     pub(super) frames: u32,
 }
 
 impl OtherRun {
     /// The run that `sample` goes on, if it does, or begins.
-    pub(super) fn with(run: Option<Self>, sample: &Sample) -> Self {
+    pub(super) fn with(run: Option<Self>, sample: &Reading) -> Self {
         let frames = run.filter(|run| goes_on_closely(&run.newest, sample)).map_or(0, |run| run.frames);
         Self { newest: *sample, frames: frames + 1 }
     }

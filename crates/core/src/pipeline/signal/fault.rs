@@ -13,12 +13,11 @@ use crate::quantity::CHANNELS;
 /// that chance brings this about once in 2^64 samples.
 const STUCK_SAMPLES: u16 = 64;
 
-/// Most of the pad must be lively before silence of the rest means anything.
-const LIVELY_MIN: usize = 5;
-
 /// Watches the raw codes.
 #[derive(Clone, Debug)]
 pub struct ChannelFaults {
+    /// Those that the pad has.
+    channels: usize,
     last: Option<[i32; CHANNELS]>,
     unchanged: [u16; CHANNELS],
     seen: u32,
@@ -30,14 +29,15 @@ pub struct ChannelFaults {
 
 impl Default for ChannelFaults {
     fn default() -> Self {
-        Self::new()
+        Self::new(CHANNELS)
     }
 }
 
 impl ChannelFaults {
-    /// Knows nothing yet; every channel counts as sound.
-    pub const fn new() -> Self {
+    /// Knows nothing yet of a pad with so many channels; every one counts as sound.
+    pub const fn new(channels: usize) -> Self {
         Self {
+            channels,
             last: None,
             unchanged: [0; CHANNELS],
             seen: 0,
@@ -66,7 +66,8 @@ impl ChannelFaults {
             .iter()
             .filter(|&&changes| u64::from(changes) * 2 >= u64::from(self.seen.max(1)))
             .count();
-        self.noisy_pad = lively >= LIVELY_MIN;
+        // Most of the pad must be lively before silence of the rest means anything.
+        self.noisy_pad = 2 * lively > self.channels;
     }
 
     /// What was seen so far was no rest: what changed need not have been noise.
@@ -99,7 +100,7 @@ impl ChannelFaults {
     }
 
     fn check_stuck(&mut self, health: &mut Health) -> bool {
-        for (&unchanged, stuck) in self.unchanged.iter().zip(self.stuck.iter_mut()) {
+        for (&unchanged, stuck) in self.unchanged.iter().zip(self.stuck.iter_mut()).take(self.channels) {
             let now = self.noisy_pad && unchanged >= STUCK_SAMPLES;
             health.channels_stuck += u64::from(now && !*stuck);
             *stuck = now;
@@ -125,7 +126,7 @@ mod tests {
 
     /// A detector that has watched 300 samples at rest, and what it said of the next 100.
     fn run(rest_silent: &[usize], play_silent: &[usize]) -> (Vec<bool>, Health) {
-        let (mut faults, mut health) = (ChannelFaults::new(), Health::default());
+        let (mut faults, mut health) = (ChannelFaults::new(CHANNELS), Health::default());
         for i in 0..300 {
             faults.check(&sample(i, rest_silent), 24, &mut health);
         }
@@ -156,7 +157,7 @@ mod tests {
 
     #[test]
     fn the_ends_of_the_range_are_saturation_and_count_once() {
-        let (mut faults, mut health) = (ChannelFaults::new(), Health::default());
+        let (mut faults, mut health) = (ChannelFaults::new(CHANNELS), Health::default());
         let top = (1 << 23) - 1;
         for (count, saturated) in
             [(top - 1, false), (top, true), (top, true), (1 - top, false), (-top - 1, true)]
@@ -170,7 +171,7 @@ mod tests {
 
     #[test]
     fn the_full_range_of_32_bits_is_allowed() {
-        let (mut faults, mut health) = (ChannelFaults::new(), Health::default());
+        let (mut faults, mut health) = (ChannelFaults::new(CHANNELS), Health::default());
         let mut sample = sample(0, &[]);
         sample.counts[0] = i32::MAX - 1;
         assert!(!faults.check(&sample, 32, &mut health));

@@ -74,20 +74,32 @@ pub enum Conditioned {
 #[derive(Clone, Debug)]
 pub struct Signal {
     scale: Scale,
+    /// Where the pad does not tell it.
+    untold_scale: Scale,
+    /// Those that the pad has; the others are zero.
+    channels: usize,
     faults: ChannelFaults,
     filter: MeanFilter,
     tare: Tare,
 }
 
 impl Signal {
-    /// A stage that has seen nothing: it measures its zero first. `filter_samples` is the mean filter's window.
-    pub fn new(filter_samples: usize) -> Self {
+    /// A stage that has seen nothing of a pad with so many channels: it measures its zero first. `untold_scale` holds unless the pad
+    /// tells another, and `filter_samples` is the mean filter's window.
+    pub fn new(channels: usize, untold_scale: Scale, filter_samples: usize) -> Self {
         Self {
-            scale: Scale::unidentified(),
-            faults: ChannelFaults::new(),
+            scale: untold_scale,
+            untold_scale,
+            channels,
+            faults: ChannelFaults::new(channels),
             filter: MeanFilter::new(filter_samples),
             tare: Tare::new(),
         }
+    }
+
+    /// The scale in use.
+    pub const fn scale(&self) -> Scale {
+        self.scale
     }
 
     /// Changes the filter's window; it grows anew from one sample.
@@ -105,12 +117,12 @@ impl Signal {
     pub fn interrupt(&mut self, effects: &Effects) {
         let Effects { scale, channels, filter, zero, .. } = *effects;
         if scale == Effect::Forget {
-            self.scale = Scale::unidentified();
+            self.scale = self.untold_scale;
         }
         match channels {
             Effect::Keep => {}
             Effect::Doubt => self.faults.forget_rest(),
-            Effect::Forget => self.faults = ChannelFaults::new(),
+            Effect::Forget => self.faults = ChannelFaults::new(self.channels),
         }
         if filter == Effect::Forget {
             self.filter.clear();
@@ -145,7 +157,9 @@ impl Signal {
         let mean = self.filter.push(&sample.counts);
         let block_uv = self.tare.watch(at, &raw_uv(sample.counts.map(f64::from)));
         if self.tare.is_known() {
-            if let Some(channel) = block_uv.and_then(|uv| self.tare.lone(&uv, &pad.rest)) {
+            if let Some(channel) =
+                block_uv.filter(|_| self.channels == CHANNELS).and_then(|uv| self.tare.lone(&uv, &pad.rest))
+            {
                 return Conditioned::Stray { channel };
             }
             if block_uv.is_some_and(|uv| self.tare.is_pulled(&uv, pad, loads)) {

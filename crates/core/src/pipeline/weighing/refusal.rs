@@ -8,6 +8,8 @@ use std::fmt;
 pub enum WeighError {
     /// No pad is heard, or none that can be played with.
     NoPad,
+    /// It has not the nine channels whose common gain a weight tells.
+    NoNineChannels,
     /// The pad's zero was not known in time.
     NoZero,
     /// Nothing came to lie on the pad.
@@ -35,6 +37,10 @@ impl fmt::Display for WeighError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::NoPad => "no pad is heard: plug it in, leave it untouched for a moment, and weigh again",
+            Self::NoNineChannels => {
+                "this pad has not the nine channels of a strain pad: what it reads of a known weight stands in its description \
+                 (`tactpad source show`)"
+            }
             Self::NoZero => {
                 "the pad's zero is not known yet: take everything off it, wait a second, and weigh again"
             }

@@ -189,7 +189,7 @@ fn open(arguments: &Arguments, profile: &Profile) -> Result<(OpenedPad, Option<H
         return hands::open(&arguments.device).map(|(pad, hands)| (pad, Some(hands)));
     }
     let patience = patience(&arguments.pad, WaitOption::NotGiven);
-    Ok((open_pad(&arguments.pad, &arguments.device, profile, patience)?, None))
+    Ok((open_pad(&arguments.pad, None, &arguments.device, profile, patience)?, None))
 }
 
 /// The parts of a session: the pad and its bridge, the guide, and the files.

@@ -113,7 +113,8 @@ pub(super) fn judge(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -
 /// for that channel, then that finger's; else that of all channels. Decoders that explain nothing know only a channel that moved alone.
 pub fn load_without_stray_n(decoder: &Decoder, strain: &Strain) -> f32 {
     let Some(inverse) = decoder.inverse() else {
-        let is_lone = lone_channel(&strain.uv.map(f64::from)).is_some();
+        // A load above one cell reads there alone.
+        let is_lone = decoder.channels() == CHANNELS && lone_channel(&strain.uv.map(f64::from)).is_some();
         return if is_lone { 0.0 } else { decoder.load_n(strain) };
     };
     let fit_without_stray = || {

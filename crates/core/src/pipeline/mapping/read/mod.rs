@@ -6,6 +6,7 @@
 pub mod check;
 mod common;
 mod section;
+pub mod shear;
 pub mod shipped;
 
 use self::check::OutputChoice;

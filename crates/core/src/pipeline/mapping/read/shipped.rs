@@ -1,6 +1,6 @@
 //! The profiles that are inside the program, so that it runs from any folder.
 
-const SHIPPED: [(&str, &str); 11] = [
+const SHIPPED: [(&str, &str); 14] = [
     ("super-mario", include_str!("../../../../../../mappings/super-mario.toml")),
     ("tetris", include_str!("../../../../../../mappings/tetris.toml")),
     ("tank-battle", include_str!("../../../../../../mappings/tank-battle.toml")),
@@ -12,6 +12,9 @@ const SHIPPED: [(&str, &str); 11] = [
     ("supertux", include_str!("../../../../../../mappings/supertux.toml")),
     ("vitetris", include_str!("../../../../../../mappings/vitetris.toml")),
     ("btanks", include_str!("../../../../../../mappings/btanks.toml")),
+    ("tablet", include_str!("../../../../../../mappings/tablet.toml")),
+    ("touchpad", include_str!("../../../../../../mappings/touchpad.toml")),
+    ("board-seated", include_str!("../../../../../../mappings/board-seated.toml")),
 ];
 
 /// The names under which profiles are shipped.
@@ -122,7 +125,10 @@ mod tests {
                 "super-mario-light",
                 "supertux",
                 "vitetris",
-                "btanks"
+                "btanks",
+                "tablet",
+                "touchpad",
+                "board-seated"
             ]
         );
         assert!(names().all(|name| text(name).is_some_and(|text| text.starts_with(SCHEMA_LINE))));

@@ -1,0 +1,245 @@
+//! A pad that is an input device of the system: its events become frames here, so that everything behind hears one language.
+
+pub mod found;
+mod frames;
+
+use std::collections::BTreeMap;
+use std::io;
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::path::{Path, PathBuf};
+
+use ::evdev::raw_stream::RawDevice;
+use ::evdev::{AbsInfo, AbsoluteAxisCode, Device, EventType, InputEvent, KeyCode, SynchronizationCode};
+use firmware_proto::command::Command;
+use rustix::event::epoll;
+use rustix::time::{
+    Itimerspec, TimerfdClockId, TimerfdFlags, TimerfdTimerFlags, timerfd_create, timerfd_settime,
+};
+use tactpad_core::source::{Evdev, Origin, Source};
+
+use super::Transport;
+use super::opener::PadError;
+use super::pacing::{is_readable, limit, monotonic_us};
+use found::{FoundDevice, fits, fitting};
+use frames::{AxisRange, Change, EvdevFrames};
+
+/// An open input device.
+pub struct EvdevPort {
+    device: Device,
+    frames: EvdevFrames,
+    /// The same open device, by which it is taken from the desktop while it plays, and given back. The other one would complain on
+    /// standard error that a device which has left is not given back.
+    grip: Option<RawDevice>,
+    /// When it was opened, by the monotonic clock: frames count from there.
+    origin_us: u64,
+    /// Frames that were not read yet.
+    out: Vec<u8>,
+    is_gone: bool,
+    /// Readable while `device` or `timer` is: so a poll sees both.
+    either: OwnedFd,
+    timer: OwnedFd,
+}
+
+/// Opens a described device again and again.
+#[derive(Clone, Debug)]
+pub struct EvdevOpener {
+    source: Source,
+    path: Option<PathBuf>,
+    grabs: bool,
+}
+
+impl EvdevOpener {
+    /// An opener for the device at `path`, or the only one that fits. With `keeps_pointer` it goes on moving the pointer.
+    pub fn new(source: Source, path: Option<PathBuf>, keeps_pointer: bool) -> Self {
+        let grabs = matches!(&source.origin, Origin::Evdev(evdev) if evdev.grabs) && !keeps_pointer;
+        Self { source, path, grabs }
+    }
+
+    /// Opens the device if it is there.
+    ///
+    /// # Errors
+    /// See [`PadError`]; the text is one sentence with the way out.
+    pub fn open(&self) -> Result<Box<dyn Transport>, PadError> {
+        let Origin::Evdev(wanted) = &self.source.origin else {
+            return Err(PadError::Unusable(format!("{} is no input device", self.source.name)));
+        };
+        let path = self.path.clone().map_or_else(|| self.only_one(), Ok)?;
+        let device = Device::open(&path).map_err(|error| open_error(&path, &error))?;
+        if !fits(wanted, &device) {
+            return Err(PadError::Unusable(self.is_another(&path, &device)));
+        }
+        let port = EvdevPort::new(device, &self.source, wanted, self.grabs);
+        match port {
+            Ok(port) => Ok(Box::new(port)),
+            Err(error) if error.raw_os_error() == Some(rustix::io::Errno::BUSY.raw_os_error()) => {
+                Err(PadError::Denied(format!(
+                    "{} is taken by another program: end that, or play beside it with --no-grab",
+                    path.display()
+                )))
+            }
+            Err(error) => Err(open_error(&path, &error)),
+        }
+    }
+
+    fn only_one(&self) -> Result<PathBuf, PadError> {
+        let name = &self.source.name;
+        match &fitting(&self.source)[..] {
+            [found] => Ok(found.path.clone()),
+            [] => Err(PadError::NotThere(format!(
+                "no device is attached that fits {name}, or it may not be read: plug it in, and see `tactpad devices`"
+            ))),
+            several => {
+                let told = |found: &FoundDevice| format!("{name}:{} ({})", found.path.display(), found.name);
+                let list = several.iter().map(told).collect::<Vec<_>>().join(", ");
+                Err(PadError::Unusable(format!("several devices fit, choose one with --pad: {list}")))
+            }
+        }
+    }
+
+    fn is_another(&self, path: &Path, device: &Device) -> String {
+        let (name, path) = (&self.source.name, path.display());
+        let is = device.name().unwrap_or("without a name");
+        format!(
+            "{path} ({is}) is no {name}: `tactpad devices` lists what fits, `tactpad source show {name}` says what it must report"
+        )
+    }
+}
+
+fn open_error(path: &Path, error: &io::Error) -> PadError {
+    let path = path.display();
+    match error.kind() {
+        io::ErrorKind::NotFound => PadError::NotThere(format!("{path} is gone: plug the device in")),
+        io::ErrorKind::PermissionDenied => PadError::Denied(format!(
+            "no permission to read {path}: `sudo setfacl -m u:$USER:r {path}` gives it until the device is unplugged"
+        )),
+        _ if error.raw_os_error() == Some(rustix::io::Errno::NODEV.raw_os_error()) => {
+            PadError::NotThere(format!("{path} is gone: plug the device in"))
+        }
+        _ => PadError::Unusable(format!(
+            "{path} cannot be opened as an input device ({error}): name another one"
+        )),
+    }
+}
+
+impl EvdevPort {
+    fn new(device: Device, source: &Source, wanted: &Evdev, grabs: bool) -> io::Result<Self> {
+        device.set_nonblocking(true)?;
+        let grip = if grabs { Some(RawDevice::from_fd(device.as_fd().try_clone_to_owned()?)?) } else { None };
+        let mut port = Self::ungrabbed(device, source, wanted, grip)?;
+        port.grip.as_mut().map_or(Ok(()), RawDevice::grab)?;
+        Ok(port)
+    }
+
+    fn ungrabbed(
+        device: Device,
+        source: &Source,
+        wanted: &Evdev,
+        grip: Option<RawDevice>,
+    ) -> io::Result<Self> {
+        let range = |(axis, info): (AbsoluteAxisCode, AbsInfo)| {
+            let (value, minimum) = (info.value(), info.minimum());
+            let range = AxisRange { value, minimum, maximum: info.maximum(), resolution: info.resolution() };
+            (axis.0, range)
+        };
+        let ranges: BTreeMap<u16, AxisRange> = device.get_absinfo()?.map(range).collect();
+        let mut frames = EvdevFrames::new(source, &wanted.channels, ranges);
+        if device.get_key_state()?.contains(KeyCode::BTN_TOUCH) {
+            frames.touched_at_opening();
+        }
+        let either = epoll::create(epoll::CreateFlags::CLOEXEC)?;
+        let timer =
+            timerfd_create(TimerfdClockId::Monotonic, TimerfdFlags::CLOEXEC | TimerfdFlags::NONBLOCK)?;
+        for fd in [device.as_fd(), timer.as_fd()] {
+            epoll::add(&either, fd, epoll::EventData::new_u64(0), epoll::EventFlags::IN)?;
+        }
+        let port = Self {
+            device,
+            frames,
+            grip,
+            origin_us: monotonic_us(),
+            out: Vec::new(),
+            is_gone: false,
+            either,
+            timer,
+        };
+        port.set_timer()?;
+        Ok(port)
+    }
+
+    /// Takes what the device has reported by `now_us`.
+    fn take(&mut self, now_us: u64) -> io::Result<()> {
+        // What is not handed over yet comes first: a device that floods must not fill the memory.
+        if self.is_gone || !self.out.is_empty() || !is_readable(self.device.as_fd())? {
+            return Ok(());
+        }
+        let changes = self.device.fetch_events().map(|events| events.filter_map(change).collect::<Vec<_>>());
+        match changes {
+            Ok(changes) => {
+                for change in changes {
+                    self.frames.take(now_us, change, &mut self.out);
+                }
+            }
+            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) => {}
+            Err(_) => {
+                // A device that is gone is readable for ever.
+                epoll::delete(&self.either, self.device.as_fd())?;
+                self.is_gone = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets the descriptor poll readable when the state is to be sent again, or at once if frames or the end are to be told.
+    fn set_timer(&self) -> io::Result<()> {
+        let is_more = !self.out.is_empty() || self.is_gone;
+        let due_us = if is_more { 1 } else { self.origin_us + self.frames.due_us() };
+        let timer = Itimerspec { it_interval: limit(0), it_value: limit(due_us) };
+        timerfd_settime(&self.timer, TimerfdTimerFlags::ABSTIME, &timer)?;
+        Ok(())
+    }
+}
+
+fn change(event: InputEvent) -> Option<Change> {
+    match event.event_type() {
+        EventType::ABSOLUTE => Some(Change::Axis(event.code(), event.value())),
+        EventType::KEY => Some(Change::Button(event.code(), event.value() != 0)),
+        EventType::SYNCHRONIZATION => {
+            (event.code() == SynchronizationCode::SYN_REPORT.0).then_some(Change::End)
+        }
+        _ => None,
+    }
+}
+
+impl Transport for EvdevPort {
+    fn fd(&self) -> BorrowedFd<'_> {
+        self.either.as_fd()
+    }
+
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let now_us = monotonic_us().saturating_sub(self.origin_us);
+        self.take(now_us)?;
+        if !self.is_gone {
+            self.frames.repeat(now_us, &mut self.out);
+        }
+        let count = self.out.len().min(bytes.len());
+        bytes.iter_mut().zip(self.out.drain(..count)).for_each(|(to, from)| *to = from);
+        self.set_timer()?;
+        match (count, self.is_gone) {
+            (0, true) => Err(io::Error::new(io::ErrorKind::BrokenPipe, "the device was unplugged")),
+            (0, false) => Err(io::ErrorKind::WouldBlock.into()),
+            (count, _) => Ok(count),
+        }
+    }
+
+    /// Does nothing: an input device takes no commands of ours.
+    fn send(&mut self, _command: &Command) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn pause(&mut self, is_paused: bool) {
+        // One that left meanwhile is noticed by who reads next.
+        if let Some(grip) = &mut self.grip {
+            let _ = if is_paused { grip.ungrab() } else { grip.grab() };
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! The kernel's names of what input devices report, as far as descriptions use them.
+
+/// What a device reports: an absolute axis or a button, by the kernel's number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputCode {
+    /// An absolute axis.
+    Axis(u16),
+    /// A key or button.
+    Button(u16),
+}
+
+/// Axes by name.
+pub const AXES: [(&str, u16); 20] = [
+    ("ABS_X", 0x00),
+    ("ABS_Y", 0x01),
+    ("ABS_Z", 0x02),
+    ("ABS_RX", 0x03),
+    ("ABS_RY", 0x04),
+    ("ABS_RZ", 0x05),
+    ("ABS_HAT0X", 0x10),
+    ("ABS_HAT0Y", 0x11),
+    ("ABS_HAT1X", 0x12),
+    ("ABS_HAT1Y", 0x13),
+    ("ABS_HAT2X", 0x14),
+    ("ABS_HAT2Y", 0x15),
+    ("ABS_HAT3X", 0x16),
+    ("ABS_HAT3Y", 0x17),
+    ("ABS_PRESSURE", 0x18),
+    ("ABS_DISTANCE", 0x19),
+    ("ABS_MT_SLOT", 0x2f),
+    ("ABS_MT_POSITION_X", 0x35),
+    ("ABS_MT_POSITION_Y", 0x36),
+    ("ABS_MT_PRESSURE", 0x3a),
+];
+
+/// Axes and buttons by name.
+pub const CODES: [(&str, InputCode); 26] = {
+    let mut codes = [("", InputCode::Axis(0)); 26];
+    let mut k = 0;
+    while k < AXES.len() {
+        let (name, number) = AXES[k];
+        codes[k] = (name, InputCode::Axis(number));
+        k += 1;
+    }
+    codes[20] = ("BTN_TOUCH", InputCode::Button(0x14a));
+    codes[21] = ("BTN_TOOL_PEN", InputCode::Button(0x140));
+    codes[22] = ("BTN_TOOL_RUBBER", InputCode::Button(0x141));
+    codes[23] = ("BTN_TOOL_FINGER", InputCode::Button(0x145));
+    codes[24] = ("BTN_STYLUS", InputCode::Button(0x14b));
+    codes[25] = ("BTN_A", InputCode::Button(0x130));
+    codes
+};

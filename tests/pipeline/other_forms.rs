@@ -144,6 +144,44 @@ fn few_channels_play_by_their_description_and_are_refused_without() {
     assert_eq!(other.pipeline.refusal(), Some(&Refusal::OtherChannels { channels: 9, wanted: 4 }));
 }
 
+/// A board of 2.4 kg that somebody takes up and puts down: its cells hang free as still as they stand.
+#[test]
+fn a_board_that_was_taken_up_holds_nothing_and_plays_again() {
+    let own = [60_000; 4];
+    for up_ms in [30, 150, 400, 1_000, 6_000] {
+        let mut rig = cells();
+        rig.read(own, 600);
+        rig.read([0; 4], up_ms);
+        rig.read(own, 4_000);
+        assert!(
+            rig.is_neutral() && rig.pipeline.phase() == Phase::Playing,
+            "{up_ms} ms: {:?}",
+            rig.pipeline.phase()
+        );
+        rig.take_events();
+        let [left, right] = [0.125, 0.375].map(|share| (share * 20.0 / 9.806_65e-3 * 100.0) as i32);
+        rig.read([own[0] + left, own[1] + right, own[2] + left, own[3] + right], 200);
+        assert_eq!(rig.take_events(), ["ABS_HAT0X=1"], "{up_ms} ms");
+        rig.read(own, 200);
+        assert!(rig.is_neutral(), "{up_ms} ms");
+        // A press that is held is no board that was put down.
+        rig.read([own[0] + left, own[1] + right, own[2] + left, own[3] + right], 6_000);
+        assert_eq!(rig.take_events().last().map(String::as_str), Some("ABS_HAT0X=1"), "{up_ms} ms");
+    }
+}
+
+/// What is pulled at for a moment is no load afterwards, and plays within a second or so.
+#[test]
+fn a_pull_leaves_nothing_behind() {
+    for (pull, ms) in [(-3_000, 150), (-3_000, 1_000), (-20_000, 300)] {
+        let mut rig = cells();
+        rig.read([0; 4], 600);
+        rig.read([pull; 4], ms);
+        rig.read([0; 4], 4_500);
+        assert!(rig.is_neutral() && rig.pipeline.phase() == Phase::Playing, "{pull} for {ms} ms");
+    }
+}
+
 #[test]
 fn who_they_say_they_are_is_held_against_their_description() {
     let identity = |channels| {

@@ -53,6 +53,8 @@ pub struct LineFrames {
     counts_per_unit: f64,
     /// The line that is coming in; `None` before the first end of a line, and while one is too long.
     partial: Option<Vec<u8>>,
+    /// Bytes since then that belong to no line.
+    skipped: usize,
     /// How many fields a line has, and how many lines in a row had another number, which one.
     fields: Option<usize>,
     other_fields: (usize, u8),
@@ -75,6 +77,7 @@ impl LineFrames {
             columns: lines.columns.clone(),
             counts_per_unit: 10_f64.powi(lines.decimals.into()),
             partial: None,
+            skipped: 0,
             fields: None,
             other_fields: (0, 0),
             newest: None,
@@ -187,15 +190,18 @@ impl LineFrames {
     /// Takes a byte; what a line that ends with it says, if it is no empty one.
     fn push(&mut self, byte: u8) -> Option<Result<Measurement, LineOutcome>> {
         if !matches!(byte, b'\n' | b'\r') {
-            if let Some(partial) = &mut self.partial {
-                partial.push(byte);
-                if partial.len() > LINE_BYTES_MAX {
-                    self.partial = None;
-                    return Some(Err(LineOutcome::TooLong));
-                }
+            match &mut self.partial {
+                Some(partial) => partial.push(byte),
+                None => self.skipped += 1,
             }
-            return None;
+            if self.skipped.max(self.partial.as_ref().map_or(0, Vec::len)) <= LINE_BYTES_MAX {
+                return None;
+            }
+            // Also what has no end at all is told, again and again.
+            (self.partial, self.skipped) = (None, 0);
+            return Some(Err(LineOutcome::TooLong));
         }
+        self.skipped = 0;
         // What came before the first end of a line may be half of one.
         let line = self.partial.replace(Vec::new())?;
         let text = std::str::from_utf8(&line).map(str::trim);

@@ -8,13 +8,18 @@ const STILL_LINES: u32 = u32::BITS;
 /// A cell is lively if its number changes in so many of them: then chance brings [`STILL_LINES`] alike once in 2^32.
 const LIVELY_LINES: u32 = STILL_LINES / 2;
 
+/// Which cells are lively is learnt in so many first lines, when nothing lies on the board: under a hand also coarse cells tremble.
+const LEARNT_LINES: u32 = 2 * STILL_LINES;
+
 /// Watches the numbers of one line after the other.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StillCells {
     last: Option<[i32; FEW_CHANNELS_MAX]>,
     /// One bit for each of the last lines, set where the number was another than before.
     changed: [u32; FEW_CHANNELS_MAX],
-    /// Whether a cell has ever been lively.
+    /// Lines so far, up to [`LEARNT_LINES`].
+    lines: u32,
+    /// Whether a cell was lively while that was learnt.
     was_lively: [bool; FEW_CHANNELS_MAX],
 }
 
@@ -27,7 +32,10 @@ impl StillCells {
             *changed = *changed << 1 | u32::from(count != last);
         }
         let is_lively = self.changed.map(|changed| changed.count_ones() >= LIVELY_LINES);
-        self.was_lively.iter_mut().zip(is_lively).for_each(|(was, is)| *was |= is);
+        if self.lines < LEARNT_LINES {
+            self.lines += 1;
+            self.was_lively.iter_mut().zip(is_lively).for_each(|(was, is)| *was |= is);
+        }
         let lively = is_lively.iter().take(cells).filter(|is_lively| **is_lively).count();
         std::array::from_fn(|k| k < cells && self.changed[k] == 0 && self.was_lively[k] && 2 * lively > cells)
     }
@@ -50,5 +58,12 @@ mod tests {
         assert_eq!(told_after(|k| k % 11, true), Some(32));
         assert_eq!(told_after(|k| k % 11, false), None, "it was never lively");
         assert_eq!(told_after(|_| 3, true), None, "nothing moves");
+        // Whole grams, and a hand on one corner that makes three cells tremble.
+        let mut coarse = StillCells::default();
+        (0..100).for_each(|_| assert_eq!(coarse.see(&[0; 8], 4), [false; 8]));
+        for k in 0..200 {
+            let hand = [40 + k % 3, 300 + k % 7, 20 + k % 2, if k < 50 { k % 2 } else { 2 }, 0, 0, 0, 0];
+            assert_eq!(coarse.see(&hand, 4), [false; 8]);
+        }
     }
 }

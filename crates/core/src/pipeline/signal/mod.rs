@@ -59,7 +59,7 @@ pub enum Conditioned {
     Taring,
     /// The zero cannot be measured, as something lies on the pad.
     Loaded,
-    /// The zero turned out to be a load: it is to be measured anew.
+    /// The zero turned out to be a load, or was measured while something pulled: it is to be measured anew.
     Pulled,
     /// A channel reads a load of which the others know nothing: it is none, and was taken for the channel's zero.
     Stray {
@@ -93,7 +93,7 @@ impl Signal {
             channels,
             faults: ChannelFaults::new(channels),
             filter: MeanFilter::new(filter_samples),
-            tare: Tare::new(),
+            tare: Tare::new(channels < CHANNELS),
         }
     }
 
@@ -130,7 +130,7 @@ impl Signal {
         match zero {
             Effect::Keep => {}
             Effect::Doubt => self.tare.doubt(),
-            Effect::Forget => self.tare = Tare::new(),
+            Effect::Forget => self.tare = Tare::new(self.channels < CHANNELS),
         }
     }
 
@@ -162,7 +162,9 @@ impl Signal {
             {
                 return Conditioned::Stray { channel };
             }
-            if block_uv.is_some_and(|uv| self.tare.is_pulled(&uv, pad, loads)) {
+            if block_uv
+                .is_some_and(|uv| self.tare.is_pulled(&uv, pad, loads) || self.tare.stands(at, pad.touched))
+            {
                 return Conditioned::Pulled;
             }
             return Conditioned::Strain(self.tare.apply(at, &raw_uv(mean), pad.touched, &pad.rest));

@@ -3,6 +3,9 @@
 //! A finger may lie as still as the pad itself, and what the untouched pad reads is not known beforehand. But nothing can
 //! pull at the plate: of two readings the lower load is nearer to the zero. So a press is never the zero once a lower load
 //! has been seen, and a zero that turns out to be a load is measured anew.
+//!
+//! A board may be lifted, and a cap be pulled. A zero that was found after that holds when what came next has gone again; where that stands
+//! as still as no finger does, it is the zero.
 
 use super::lone::lone_channel;
 use super::stillness::{STILL_UV, Stillness};
@@ -28,6 +31,12 @@ const LONE_UV: f64 = 250.0;
 /// The lowest reading counts so long, unless the pad reads it again: a pad that jumps once when it is switched on must be
 /// tared some time.
 const FLOOR_US: u64 = 5_000_000;
+
+/// The same where something can pull.
+const FLOOR_PULLED_US: u64 = 1_000_000;
+
+/// What stands still for so long after the zero was in doubt is no finger, where something can pull.
+const STANDS_US: u64 = 3_000_000;
 
 /// While idle the zero follows with this time constant. Long, so that a press that grows at 0.01 N/s is still seen
 /// as a press; short against warming up, which drifts by about 30 µV per kelvin (Sensors 2026, 26, 1378, Figure 8).
@@ -104,18 +113,31 @@ pub struct Tare {
     pulls: u32,
     /// Blocks in a row in which a channel reads alone.
     lones: u32,
+    /// Whether something can pull at what is pressed.
+    can_be_pulled: bool,
+    provisional: Option<ProvisionalZero>,
+}
+
+/// A zero that was found after another one turned out to be a load.
+#[derive(Clone, Copy, Debug, Default)]
+struct ProvisionalZero {
+    was_touched: bool,
+    /// Since when what touches stands still.
+    still_since: Option<StreamInstant>,
 }
 
 impl Default for Tare {
     fn default() -> Self {
-        Self::new()
+        Self::new(false)
     }
 }
 
 impl Tare {
-    /// No zero yet.
-    pub const fn new() -> Self {
+    /// No zero yet of a pad at which something can pull, or not.
+    pub const fn new(can_be_pulled: bool) -> Self {
         Self {
+            can_be_pulled,
+            provisional: None,
             zero_uv: None,
             doubt_uv: [0.0; CHANNELS],
             followed_at: StreamInstant::from_us(0),
@@ -144,6 +166,25 @@ impl Tare {
             (self.block_uv, self.floor) = (None, None);
         }
         (self.loaded, self.pulls) = (true, 0);
+        self.provisional = if self.can_be_pulled {
+            Some(ProvisionalZero { was_touched: false, still_since: None })
+        } else {
+            None
+        };
+    }
+
+    /// Whether what touches the pad stands still since long, and nothing has come and gone since the zero was in doubt: then it was measured
+    /// while something pulled.
+    pub fn stands(&mut self, at: StreamInstant, touched: bool) -> bool {
+        let is_still = self.stillness.mean_uv().is_some();
+        let Some(provisional) = &mut self.provisional else { return false };
+        if !touched {
+            self.provisional = if provisional.was_touched { None } else { Some(ProvisionalZero::default()) };
+            return false;
+        }
+        provisional.was_touched = true;
+        provisional.still_since = if is_still { provisional.still_since.or(Some(at)) } else { None };
+        provisional.still_since.is_some_and(|since| at.us_since(since) > STANDS_US)
     }
 
     /// Takes a raw sample (µV), with or without a zero: whether the pad lies still is watched all the time. The mean of the
@@ -220,7 +261,8 @@ impl Tare {
         let before_uv = self.block_uv.replace(*block_uv)?;
         let block_uv = if load_n(&relative(block_uv, &before_uv)) < 0.0 { &before_uv } else { block_uv };
         let block = Floor { uv: *block_uv, at };
-        let standing = self.floor.filter(|floor| at.us_since(floor.at) <= FLOOR_US);
+        let floor_us = if self.can_be_pulled { FLOOR_PULLED_US } else { FLOOR_US };
+        let standing = self.floor.filter(|floor| at.us_since(floor.at) <= floor_us);
         let floor = standing.map_or(block, |floor| match load_n(&relative(block_uv, &floor.uv)) {
             above_n if above_n > SAME_N => floor,
             above_n if above_n >= 0.0 => Floor { at, ..floor },
@@ -291,7 +333,7 @@ mod tests {
 
     #[test]
     fn a_pad_at_rest_is_tared_within_a_short_lift() {
-        let mut tare = Tare::new();
+        let mut tare = Tare::new(false);
         assert!(
             known_at_ms(&mut tare, |ms| 1_500.0 + if ms % 2 == 0 { 30.0 } else { -30.0 }).unwrap() <= 200
         );
@@ -303,7 +345,7 @@ mod tests {
     #[test]
     fn a_finger_that_leaves_keeps_the_zero_unknown_until_the_pad_lies_still() {
         let ramp = |ms: u64| 400.0 * (2_000.0 - ms.min(2_000) as f64) * 1e-3;
-        let known_at_ms = known_at_ms(&mut Tare::new(), ramp).unwrap();
+        let known_at_ms = known_at_ms(&mut Tare::new(false), ramp).unwrap();
         assert!((2_000..2_250).contains(&known_at_ms), "{known_at_ms} ms");
     }
 
@@ -311,11 +353,11 @@ mod tests {
     fn a_still_press_after_a_lower_load_is_no_zero_until_it_is_the_lowest_for_long() {
         // A finger comes after 100 ms, too soon for a zero, and stays.
         let press = |until_ms: u64| move |ms: u64| if (100..until_ms).contains(&ms) { 800.0 } else { 0.0 };
-        let mut tare = Tare::new();
+        let mut tare = Tare::new(false);
         let known = known_at_ms(&mut tare, press(2_000)).unwrap();
         assert!((2_150..2_250).contains(&known), "{known} ms");
         assert!(!tare.is_loaded());
-        let known = known_at_ms(&mut Tare::new(), press(8_000)).unwrap();
+        let known = known_at_ms(&mut Tare::new(false), press(8_000)).unwrap();
         assert!((5_100..5_200).contains(&known), "{known} ms");
     }
 
@@ -323,14 +365,14 @@ mod tests {
     fn a_slip_of_a_sample_is_no_lower_load() {
         for slipped in 0..190 {
             let slip = |ms: u64| if ms == slipped { -100_000.0 } else { 800.0 };
-            let known = known_at_ms(&mut Tare::new(), slip).unwrap();
+            let known = known_at_ms(&mut Tare::new(false), slip).unwrap();
             assert!(known <= slipped + 250, "{slipped}: {known} ms");
         }
     }
 
     #[test]
     fn a_zero_under_load_is_measured_anew_at_rest_however_short_the_lifts_before() {
-        let mut tare = Tare::new();
+        let mut tare = Tare::new(false);
         assert!(known_at_ms(&mut tare, |_| 3_000.0).is_some_and(|ms| ms < 200));
         // Lifts of 100 ms are too short; in between it is pressed as before, and lighter.
         let load = |ms: u64| match ms {
@@ -355,7 +397,7 @@ mod tests {
 
     #[test]
     fn blocks_below_the_zero_with_a_touch_between_are_not_in_a_row() {
-        let mut tare = Tare::new();
+        let mut tare = Tare::new(false);
         assert!(known_at_ms(&mut tare, |_| 0.0).is_some());
         let mut pulled = |touched| {
             let rest = UntouchedOffset::NONE;
@@ -370,7 +412,7 @@ mod tests {
     #[test]
     fn the_zero_follows_drift_while_idle_and_stands_still_under_a_finger() {
         for (touched, expected_uv) in [(false, 36.8), (true, 100.0)] {
-            let mut tare = Tare::new();
+            let mut tare = Tare::new(false);
             known_at_ms(&mut tare, |_| 0.0);
             let strain_uv = (0..20_000).map(|ms| {
                 tare.apply(
@@ -388,7 +430,7 @@ mod tests {
 
     #[test]
     fn a_load_that_came_during_a_gap_is_no_drift() {
-        let mut tare = Tare::new();
+        let mut tare = Tare::new(false);
         known_at_ms(&mut tare, |_| 0.0);
         let strain = tare.apply(
             StreamInstant::from_us(60_000_000),
@@ -401,7 +443,7 @@ mod tests {
 
     #[test]
     fn a_slow_pad_is_tared_too() {
-        let mut tare = Tare::new();
+        let mut tare = Tare::new(false);
         let known = (0..50).find(|&i| {
             feed(&mut tare, 10 * i, 7.0, &UntouchedOffset::NONE);
             tare.is_known()
@@ -412,7 +454,7 @@ mod tests {
     #[test]
     fn what_is_left_behind_is_not_taken_for_the_zero_and_what_was_is_mended_soon() {
         let rest = |uv, doubt_uv| UntouchedOffset { uv: [uv; CHANNELS], doubt_uv: [doubt_uv; CHANNELS] };
-        let mut tare = Tare::new();
+        let mut tare = Tare::new(false);
         // A pad with 30 µV of hysteresis, of which nothing is known yet.
         for ms in 0..500 {
             feed(&mut tare, ms, 130.0, &rest(0.0, 50.0));

@@ -101,7 +101,7 @@ pub struct Row {
     /// Its line in the file, from 1; 0 for a row that comes from no file.
     pub line: usize,
     /// Index of its table, where several were joined.
-    pub measurement: usize,
+    pub measurement: u16,
     /// Index of its trial in [`Table::trials`].
     pub trial: Option<usize>,
     /// Index of its session in [`Table::sessions`].
@@ -119,7 +119,7 @@ pub struct Row {
     /// By how much the pad was turned on the stage, counter-clockwise seen from above. Labels are in the pad's frame.
     pub turned_deg: Option<f64>,
     /// Grams of the known weight that lay there, 0 for an untouched pad; then the label's force is its, whatever the reference wrote.
-    pub weight_g: Option<f64>,
+    pub weight_g: Option<f32>,
     /// What the reference wrote.
     pub label: Label,
     /// The channels, in the order of [`CHANNEL_NAMES`](crate::quantity::CHANNEL_NAMES); none in a plan.
@@ -176,7 +176,7 @@ impl Table {
     /// knows are left out.
     pub fn joined(tables: impl IntoIterator<Item = Self>) -> Self {
         let mut all = Self::default();
-        for (measurement, Self { rows, trials, sessions, open_end, .. }) in tables.into_iter().enumerate() {
+        for (measurement, Self { rows, trials, sessions, open_end, .. }) in (0..).zip(tables) {
             let first_trial = all.trials.len();
             all.trials.extend(trials);
             let places: Vec<usize> = sessions.into_iter().map(|name| all.place_of_session(name)).collect();

@@ -120,7 +120,7 @@ fn push_cell(text: &mut String, column: Column, row: &Row, of: &Table) {
         Column::Dwell => (None, row.dwell_s),
         Column::Approach => (row.approach.map(|approach| approach.name().to_owned()), None),
         Column::Turned => (None, row.turned_deg),
-        Column::Weight => (None, row.weight_g),
+        Column::Weight => (None, row.weight_g.map(f64::from)),
         Column::Channels => return push_channels(text, row.uv),
         Column::Others => return push_others(text, row.line, of),
     };

@@ -11,7 +11,7 @@ pub(crate) fn observed(table: &Table) -> Observations {
     let sample = |row: &Row| Sample {
         place_mm: [row.label.x_mm, row.label.y_mm],
         load: [row.label.fx_n, row.label.fy_n, row.label.fz_n],
-        measurement: row.measurement,
+        measurement: row.measurement.into(),
         session: row.session.unwrap_or(0),
         trial: row.trial,
         t_s: row.t_s,

@@ -23,7 +23,18 @@ fn what_is_listed_can_be_shown_and_is_in_order() {
     let list: Value = serde_json::from_slice(&list.stdout).unwrap();
     let names: Vec<&str> =
         list["sources"].as_array().unwrap().iter().map(|source| source["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["load-cells", "balance-board", "tablet", "touchpad", "magic-trackpad", "spacemouse"]);
+    assert_eq!(
+        names,
+        [
+            "load-cells",
+            "balance-board",
+            "balance-board-standing",
+            "tablet",
+            "touchpad",
+            "magic-trackpad",
+            "spacemouse"
+        ]
+    );
     for name in names {
         let shown = tactpad(folder, &format!("source show {name}"));
         fs::write(folder.join("mine.toml"), &shown.stdout).unwrap();

@@ -19,6 +19,7 @@ mod player;
 mod profile_reference;
 mod profile_schema;
 mod rig;
+mod standing;
 mod timeline;
 mod validation;
 mod warmth;

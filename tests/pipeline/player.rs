@@ -52,6 +52,11 @@ fn what_is_meant_comes_out(seeds: u64) {
             let read = shipped::text(name).and_then(|text| check::read(text, output).0);
             let Some(profile) = read else { panic!("{name} is in order") };
             let script = Script::for_profile(&profile, DURATION_US);
+            if script.contacts() == 0 {
+                // Its directions want nearly as much force as its buttons: a person's weight, which no finger holds so well.
+                assert_eq!(name, "board-standing");
+                continue;
+            }
             // On the way of the pointer there is no event to expect, only at its buttons.
             let events = if profile.pointer.is_some() || profile.dpad.is_none() { 8 } else { 20 };
             let contacts = if profile.access.bounce_us > 0 { 6 } else { 10 };

@@ -2,10 +2,12 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
+use tactpad::pipeline::mapping::read::shipped;
 
 fn tactpad(folder: &Path, line: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_tactpad")).args(line.split(' ')).current_dir(folder).output().unwrap()
@@ -23,7 +25,18 @@ fn what_is_listed_can_be_shown_and_is_in_order() {
     let list: Value = serde_json::from_slice(&list.stdout).unwrap();
     let names: Vec<&str> =
         list["sources"].as_array().unwrap().iter().map(|source| source["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["load-cells", "balance-board", "tablet", "touchpad", "magic-trackpad", "spacemouse"]);
+    assert_eq!(
+        names,
+        [
+            "load-cells",
+            "balance-board",
+            "balance-board-standing",
+            "tablet",
+            "touchpad",
+            "magic-trackpad",
+            "spacemouse"
+        ]
+    );
     for name in names {
         let shown = tactpad(folder, &format!("source show {name}"));
         fs::write(folder.join("mine.toml"), &shown.stdout).unwrap();
@@ -100,4 +113,33 @@ fn a_profile_that_asks_for_shear_is_warned_of_with_its_line() {
         told.contains("contra:30:9: warning: \"force\" is \"fy\"") && told.contains("no force along"),
         "{told}"
     );
+}
+
+#[test]
+fn a_profile_that_is_asked_for_or_changed_later_is_warned_of_as_well() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (contra, mario) = (shipped::text("contra").unwrap(), shipped::text("super-mario").unwrap());
+    let mine = folder.join("mine.toml");
+    fs::write(&mine, mario).unwrap();
+    let program = |line: &str| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+        program.args(line.split(' ')).current_dir(folder).env("XDG_RUNTIME_DIR", folder);
+        program
+    };
+    let line = "run --pad load-cells:no-such-port --wait --profile mine.toml --output none --seconds 30";
+    let mut bridge = program(line).stderr(Stdio::piped()).spawn().unwrap();
+    let mut said = BufReader::new(bridge.stderr.take().unwrap()).lines().map_while(Result::ok);
+    let mut until = |words: &str| {
+        let before: Vec<String> = said.by_ref().take_while(|line| !line.contains(words)).collect();
+        assert!(before.iter().all(|line| !line.contains("no force along")), "{words}: {before:?}");
+    };
+    until("load-cells:no-such-port");
+    fs::write(&mine, contra).unwrap();
+    until("mine.toml:30:9: warning: \"force\" is \"fy\", and this pad measures no force along");
+    until("its file was changed");
+    assert!(program("ctl profile contra").status().unwrap().success());
+    until("contra:30:9: warning: \"force\" is \"fy\", and this pad measures no force along");
+    bridge.kill().unwrap();
+    bridge.wait().unwrap();
 }

@@ -74,6 +74,8 @@ pub struct Effects {
     pub thermometer: Effect,
     /// The touch; in doubt, it ends.
     pub touch: Effect,
+    /// The weight of who stands on the pad; in doubt, the weighing that is under way begins anew.
+    pub standing: Effect,
     /// What is watched for warnings; in doubt, the stretch of time that was begun is not gone on with.
     pub watch: Effect,
     /// A weighing that is under way; in doubt, its mean begins anew, and a second time ends it. Forgotten, it ends.
@@ -88,34 +90,34 @@ impl Cause {
     #[rustfmt::skip]
     pub const fn effects(self) -> Effects {
         use Effect::{Doubt, Forget, Keep};
-        let [scale, gain, channels, filter, zero, memory, thermometer, touch, watch, weighing, contact] = match self {
-            //                     scale   gain    channels filter  zero    memory  thermo. touch   watch   weighing contact
-            Self::Unplugged    => [Forget, Forget, Forget,  Forget, Forget, Forget, Forget, Doubt,  Forget, Forget,  Doubt],
-            Self::Lost         => [Keep,   Keep,   Keep,    Forget, Keep,   Doubt,  Keep,   Doubt,  Doubt,  Forget,  Doubt],
-            Self::Restarted    => [Keep,   Keep,   Forget,  Forget, Forget, Doubt,  Keep,   Forget, Doubt,  Forget,  Doubt],
+        let [scale, gain, channels, filter, zero, memory, thermometer, touch, standing, watch, weighing, contact] = match self {
+            //                     scale   gain    channels filter  zero    memory  thermo. touch   standing  watch   weighing contact
+            Self::Unplugged    => [Forget, Forget, Forget,  Forget, Forget, Forget, Forget, Doubt,  Forget,   Forget, Forget,  Doubt],
+            Self::Lost         => [Keep,   Keep,   Keep,    Forget, Keep,   Doubt,  Keep,   Doubt,  Doubt,    Doubt,  Forget,  Doubt],
+            Self::Restarted    => [Keep,   Keep,   Forget,  Forget, Forget, Doubt,  Keep,   Forget, Forget,   Doubt,  Forget,  Doubt],
             // The new scale is set; whatever was measured in the old one is of no use.
-            Self::Rescaled     => [Keep,   Forget, Forget,  Forget, Forget, Doubt,  Keep,   Forget, Doubt,  Forget,  Doubt],
-            Self::Identified   => [Keep,   Keep,   Keep,    Keep,   Keep,   Doubt,  Keep,   Forget, Doubt,  Doubt,   Doubt],
-            Self::Exchanged    => [Keep,   Forget, Forget,  Forget, Forget, Forget, Forget, Forget, Forget, Forget,  Doubt],
-            Self::Unsuitable   => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Forget, Doubt,  Forget,  Doubt],
-            Self::NewerVersion => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Forget,  Doubt],
-            Self::Discontinuity => [Keep,   Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt,   Doubt],
-            Self::Faulty       => [Keep,   Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt,   Doubt],
+            Self::Rescaled     => [Keep,   Forget, Forget,  Forget, Forget, Doubt,  Keep,   Forget, Forget,   Doubt,  Forget,  Doubt],
+            Self::Identified   => [Keep,   Keep,   Keep,    Keep,   Keep,   Doubt,  Keep,   Forget, Doubt,    Doubt,  Doubt,   Doubt],
+            Self::Exchanged    => [Keep,   Forget, Forget,  Forget, Forget, Forget, Forget, Forget, Forget,   Forget, Forget,  Doubt],
+            Self::Unsuitable   => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Forget, Forget,   Doubt,  Forget,  Doubt],
+            Self::NewerVersion => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,    Doubt,  Forget,  Doubt],
+            Self::Discontinuity => [Keep,   Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,    Doubt,  Doubt,   Doubt],
+            Self::Faulty       => [Keep,   Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,    Doubt,  Doubt,   Doubt],
             // There is no contact, which is certain: it is mapped as a lift.
-            Self::Taring       => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep,    Keep],
+            Self::Taring       => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,    Doubt,  Keep,    Keep],
             // Memory that was followed from a wrong zero is wrong, too. The touch has begun anew by itself, and is lifted.
-            Self::Drifted      => [Keep,   Keep,   Doubt,   Keep,   Forget, Forget, Keep,   Keep,   Keep,   Keep,    Keep],
-            Self::Stray        => [Keep,   Keep,   Keep,    Forget, Keep,   Forget, Keep,   Forget, Doubt,  Doubt,   Doubt],
+            Self::Drifted      => [Keep,   Keep,   Doubt,   Keep,   Forget, Forget, Keep,   Keep,   Forget,   Keep,   Keep,    Keep],
+            Self::Stray        => [Keep,   Keep,   Keep,    Forget, Keep,   Forget, Keep,   Forget, Doubt,    Doubt,  Doubt,   Doubt],
             // What memory followed is wrong. The touch is looked at as long as it lasts.
-            Self::Doubted      => [Keep,   Keep,   Keep,    Keep,   Keep,   Forget, Keep,   Keep,   Doubt,  Doubt,   Doubt],
-            Self::Loaded       => [Keep,   Keep,   Doubt,   Keep,   Doubt,  Forget, Keep,   Keep,   Doubt,  Keep,    Keep],
+            Self::Doubted      => [Keep,   Keep,   Keep,    Keep,   Keep,   Forget, Keep,   Keep,   Doubt,    Doubt,  Doubt,   Doubt],
+            Self::Loaded       => [Keep,   Keep,   Doubt,   Keep,   Doubt,  Forget, Keep,   Keep,   Forget,   Doubt,  Keep,    Keep],
             // A weight that lies there would be the new zero.
-            Self::Retared      => [Keep,   Keep,   Doubt,   Keep,   Forget, Keep,   Keep,   Forget, Doubt,  Forget,  Doubt],
+            Self::Retared      => [Keep,   Keep,   Doubt,   Keep,   Forget, Keep,   Keep,   Forget, Forget,   Doubt,  Forget,  Doubt],
             // A paused pad can be weighed on, too: nothing is pressed either way.
-            Self::Released     => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep,    Doubt],
-            Self::Weighing     => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep,    Doubt],
+            Self::Released     => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Keep,     Doubt,  Keep,    Doubt],
+            Self::Weighing     => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Keep,     Doubt,  Keep,    Doubt],
         };
-        Effects { scale, gain, channels, filter, zero, memory, thermometer, touch, watch, weighing, contact }
+        Effects { scale, gain, channels, filter, zero, memory, thermometer, touch, standing, watch, weighing, contact }
     }
 }
 

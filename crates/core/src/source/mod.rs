@@ -129,6 +129,8 @@ pub struct Reach {
     pub full_n: f64,
     /// Standard deviation of a channel, N of the pad.
     pub noise_n: f64,
+    /// What the weight of who stands on the pad is for a profile, N: forces are relative to it; `None` where they are absolute.
+    pub standing_n: Option<f64>,
 }
 
 impl Source {
@@ -152,7 +154,7 @@ impl Source {
             Measures::Cells(_, reach) | Measures::Wrench(_, reach) => reach,
             Measures::Contact(_) => return Some(Method::Told.into()),
         };
-        let Reach { half_mm, n_per_unit, full_n, noise_n } = *reach;
+        let Reach { half_mm, n_per_unit, full_n, noise_n, standing_n } = *reach;
         let plate_n_per_n = FULL_N / full_n;
         let plate_mm_per_mm = half_mm.map(|half_mm| PLATE_RADIUS_MM / half_mm);
         let channels = match &self.measures {
@@ -169,6 +171,7 @@ impl Source {
             count_bits: COUNT_BITS,
             channels,
             noise_n: noise_n * plate_n_per_n,
+            standing_n,
         };
         Balance::new(&numbers).map(Decoder::from)
     }

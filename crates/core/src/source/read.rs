@@ -17,7 +17,7 @@ const EVDEV_KEYS: [&str; 5] = ["names", "has", "lacks", "grab", "channels"];
 const CONTACT_KEYS: [&str; 6] = ["x", "y", "force", "full_share", "full_n", "touch_n"];
 const LINES_KEYS: [&str; 3] = ["baud", "columns", "decimals"];
 const AREA_KEYS: [&str; 2] = ["half_width_mm", "half_height_mm"];
-const FORCE_KEYS: [&str; 4] = ["unit", "n_per_count", "full_n", "noise_n"];
+const FORCE_KEYS: [&str; 5] = ["unit", "n_per_count", "full_n", "noise_n", "standing_n"];
 const CELL_KEYS: [&str; 4] = ["name", "x_mm", "y_mm", "gain"];
 const WRENCH_KEYS: [&str; 4] = ["signs", "moment_unit", "nmm_per_count", "height_mm"];
 
@@ -40,6 +40,7 @@ const HALF_MM: Bounds<f64> = Bounds { low: 5.0, high: 1_000.0, default: 100.0 };
 const PLACE_MM: Bounds<f64> = Bounds { low: -1_000.0, high: 1_000.0, default: 0.0 };
 const FULL_N: Bounds<f64> = Bounds { low: 0.1, high: 5_000.0, default: 5.0 };
 const NOISE_N: Bounds<f64> = Bounds { low: 0.0, high: 100.0, default: 0.05 };
+const STANDING_N: Bounds<f64> = Bounds { low: 0.5, high: 4.0, default: 2.0 };
 const GAIN: Bounds<f64> = Bounds { low: -100.0, high: 100.0, default: 1.0 };
 const FULL_SHARE: Bounds<f64> = Bounds { low: 0.05, high: 1.0, default: 0.8 };
 const TOUCH_N: Bounds<f64> = Bounds { low: 0.1, high: 5.0, default: 2.5 };
@@ -421,6 +422,8 @@ fn read_reach(root: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Find
     force.require("full_n", "write the force, in N, that is as much as a finger's firm press", findings);
     let full_n = force.number("full_n", FULL_N, findings);
     let noise_n = force.number("noise_n", NOISE_N, findings);
+    let is_stood_on = force.place_of("standing_n").is_some();
+    let standing_n = force.number("standing_n", STANDING_N, findings);
     let unit = force.word("unit", &FORCE_UNITS, findings)?;
     let is_count = matches!(unit.value, ForceUnit::Count);
     let per_count = per_count(&force, "n_per_count", is_count, findings);
@@ -438,7 +441,8 @@ fn read_reach(root: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Find
         ForceUnit::Newtons(n) => n,
         ForceUnit::Count => per_count?,
     };
-    Some(Reach { half_mm: half_mm?, n_per_unit, full_n: full_n?.value, noise_n: noise_n?.value })
+    let standing_n = is_stood_on.then_some(standing_n?.value);
+    Some(Reach { half_mm: half_mm?, n_per_unit, full_n: full_n?.value, noise_n: noise_n?.value, standing_n })
 }
 
 /// What a count is worth, where the unit is counts and only there.
@@ -477,6 +481,7 @@ fn per_count(
 mod tests {
     use super::*;
     use crate::source::shipped;
+    use crate::toml_text::diag::Severity;
 
     const CELLS: &str = "schema = 1\nname = \"board\"\ntitle = \"A board\"\n[lines]\n[area]\nhalf_width_mm = 60\n\
         half_height_mm = 60\n[force]\nunit = \"N\"\nfull_n = 50.0\n[[cell]]\nx_mm = -60\ny_mm = 60\n[[cell]]\nx_mm = 60\n\
@@ -567,6 +572,94 @@ mod tests {
         assert!(messages("").len() >= 5, "{:?}", messages(""));
         let both = format!("{CELLS}[wrench]\nmoment_unit = \"Nm\"\n");
         assert!(messages(&both).iter().any(|found| found.contains("there are \"cell\" and \"wrench\"")));
+    }
+
+    /// A text that is cut off anywhere, or in which a part of a line is something else, and what else there may be.
+    fn broken(text: &str) -> impl Iterator<Item = String> + '_ {
+        const STRANGE: [&str; 14] = [
+            "",
+            "-1",
+            "0",
+            "1e999",
+            "-nan",
+            "inf",
+            "\"\"",
+            "\"ü\"",
+            "[]",
+            "[[]]",
+            "{}",
+            "[nan, 1]",
+            "true",
+            "1979-05-27",
+        ];
+        let ends = text.char_indices().map(|(end, _)| text[..end].to_owned());
+        let values = text.match_indices(" = ").flat_map(move |(at, between)| {
+            let begin = at + between.len();
+            let end = text[begin..].find('\n').map_or(text.len(), |end| begin + end);
+            STRANGE.map(|strange| [&text[..begin], strange, &text[end..]].concat())
+        });
+        let lines = (0..text.lines().count()).flat_map(move |number| {
+            let without = text.lines().enumerate().filter(move |(line, _)| *line != number);
+            let twice = text
+                .lines()
+                .enumerate()
+                .flat_map(move |(line, it)| vec![it; 1 + usize::from(line == number)]);
+            [
+                without.map(|(_, line)| line).collect::<Vec<_>>().join("\n"),
+                twice.collect::<Vec<_>>().join("\n"),
+            ]
+        });
+        ends.chain(values).chain(lines)
+    }
+
+    #[test]
+    fn no_text_makes_the_reader_panic_and_what_it_refuses_has_a_reason() {
+        let mut refused = 0;
+        for text in shipped::names().filter_map(shipped::text).chain([CELLS]) {
+            for broken in broken(text) {
+                let (source, found) = read(&broken);
+                assert_eq!(
+                    source.is_none(),
+                    found.iter().any(|found| found.severity == Severity::Error),
+                    "{broken}"
+                );
+                assert!(source.iter().all(|source| source.decoder().is_some()), "{broken}");
+                refused += usize::from(source.is_none());
+            }
+        }
+        assert!(refused > 1_000, "{refused}");
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_characters_make_the_reader_panic(text in "\\PC{0,200}", lines in "[a-z_=\\[\\]\"0-9.\\-\n ]{0,300}") {
+            for text in [&text, &lines, &format!("{CELLS}{lines}"), &format!("{lines}\n{CELLS}")] {
+                let (source, found) = read(text);
+                assert_eq!(source.is_none(), found.iter().any(|found| found.severity == Severity::Error), "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_weight_that_forces_are_relative_to_is_read_and_bounded() {
+        let with = |line: &str| CELLS.replace("full_n = 50.0", &format!("full_n = 50.0\n{line}"));
+        let standing_n = |text: &str| read(text).0.and_then(|source| source.decoder()?.standing_n());
+        assert_eq!(standing_n(CELLS), None);
+        assert_eq!(standing_n(&with("standing_n = 1.5")), Some(1.5));
+        assert_eq!(messages(&with("standing_n = 9")), ["11: \"standing_n\" is 9; it must be 0.5 to 4"]);
+    }
+
+    #[test]
+    fn the_board_is_the_same_for_who_stands_on_it() {
+        let [seated, standing] = ["balance-board", "balance-board-standing"]
+            .map(|name| read(shipped::text(name).unwrap()).0.unwrap());
+        let (Measures::Cells(cells, reach), Measures::Cells(same_cells, same_reach)) =
+            (&seated.measures, &standing.measures)
+        else {
+            panic!("{seated:?} {standing:?}")
+        };
+        assert_eq!((&seated.origin, cells), (&standing.origin, same_cells));
+        assert_eq!(Reach { standing_n: Some(2.0), ..*reach }, *same_reach);
     }
 
     #[test]

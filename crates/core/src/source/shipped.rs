@@ -1,8 +1,9 @@
 //! The descriptions that are inside the program, so that it runs from any folder.
 
-const SHIPPED: [(&str, &str); 6] = [
+const SHIPPED: [(&str, &str); 7] = [
     ("load-cells", include_str!("../../../../models/sources/load-cells.toml")),
     ("balance-board", include_str!("../../../../models/sources/balance-board.toml")),
+    ("balance-board-standing", include_str!("../../../../models/sources/balance-board-standing.toml")),
     ("tablet", include_str!("../../../../models/sources/tablet.toml")),
     ("touchpad", include_str!("../../../../models/sources/touchpad.toml")),
     ("magic-trackpad", include_str!("../../../../models/sources/magic-trackpad.toml")),

@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::app_state::AppState;
-use super::draft::Draft;
+use super::draft::{self, Draft};
 use super::guard::too_long;
 use super::host::{Overwrite, SaveError};
 use super::refusal::Refusal;
@@ -161,7 +161,7 @@ pub(super) async fn schema() -> Response {
 /// `POST /api/draft`: changes a text and says what there is to say of it.
 pub(super) async fn draft(State(app): Shared, request: Result<Json<Draft>, JsonRejection>) -> ApiResult {
     let draft = body(request)?;
-    Ok(Json(wait(move || draft.answer(app.host.output())).await?).into_response())
+    Ok(Json(wait(move || draft.answer(app.host.output(), app.host.pad_has_shear())).await?).into_response())
 }
 
 #[derive(Deserialize)]
@@ -177,6 +177,7 @@ pub(super) async fn preview(
     let PreviewRequest { text } = body(request)?;
     wait(move || {
         let (read, diagnostics) = ReadProfile::read(&text, app.host.output());
+        let diagnostics = draft::for_pad(diagnostics, &text, app.host.pad_has_shear());
         let Some(read) = read else {
             let answer = json!({"ok": false, "error": "the profile has errors", "diagnostics": diagnostics});
             return Ok((StatusCode::UNPROCESSABLE_ENTITY, Json(answer)).into_response());

@@ -5,6 +5,7 @@ use serde_json::{Map, Number, Value};
 
 use tactpad_core::pipeline::mapping::profile::sketch::Sketch;
 use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
+use tactpad_core::pipeline::mapping::read::shear::bound_to_shear;
 use tactpad_core::toml_text::diag::Diagnostic;
 use tactpad_core::toml_text::edit::{self, Change, TablePathStep};
 
@@ -40,7 +41,7 @@ pub(super) struct DraftAnswer {
 
 impl Draft {
     /// Makes the changes and reads what came of them.
-    pub(super) fn answer(self, output: OutputChoice) -> DraftAnswer {
+    pub(super) fn answer(self, output: OutputChoice, pad_has_shear: bool) -> DraftAnswer {
         let changes: Result<Vec<_>, _> = self.changes.into_iter().map(RequestedChange::read).collect();
         let changed = changes
             .and_then(|changes| edit::changed(&self.text, &changes).map_err(|error| error.to_string()));
@@ -49,6 +50,7 @@ impl Draft {
             Err(error) => (self.text, Some(error)),
         };
         let (profile, diagnostics) = check::read(&text, output);
+        let diagnostics = for_pad(diagnostics, &text, pad_has_shear);
         let document = toml::from_str::<toml::Table>(&text).ok().map(|table| json(toml::Value::Table(table)));
         DraftAnswer {
             ok: profile.is_some(),
@@ -59,6 +61,15 @@ impl Draft {
             error,
         }
     }
+}
+
+/// The findings about a text, and what of it does nothing on the pad, in the text's order.
+pub(super) fn for_pad(mut found: Vec<Diagnostic>, text: &str, pad_has_shear: bool) -> Vec<Diagnostic> {
+    if !pad_has_shear {
+        found.extend(bound_to_shear(text));
+        found.sort_by_key(|found| (found.line, found.column));
+    }
+    found
 }
 
 impl RequestedChange {
@@ -118,7 +129,7 @@ mod tests {
 
     fn answer(changes: Value) -> DraftAnswer {
         let asked = serde_json::json!({"text": shipped::text("contra").unwrap(), "changes": changes});
-        serde_json::from_value::<Draft>(asked).unwrap().answer(OutputChoice::AsWritten)
+        serde_json::from_value::<Draft>(asked).unwrap().answer(OutputChoice::AsWritten, true)
     }
 
     #[test]
@@ -168,8 +179,22 @@ mod tests {
     fn a_broken_text_has_the_findings_of_the_check() {
         let text = "schema = 1\nname = \"x\"\noutput = \"gamepad\"\n[dpad]\nmode = \"5way\"\n";
         let asked = serde_json::json!({"text": text});
-        let broken = serde_json::from_value::<Draft>(asked).unwrap().answer(OutputChoice::AsWritten);
+        let broken = serde_json::from_value::<Draft>(asked).unwrap().answer(OutputChoice::AsWritten, true);
         assert_eq!((broken.ok, broken.sketch.is_none()), (false, true));
         assert_eq!(broken.diagnostics, check::read(text, OutputChoice::AsWritten).1);
+    }
+
+    #[test]
+    fn what_does_nothing_on_the_pad_is_told_and_can_be_played() {
+        let text = shipped::text("contra").unwrap();
+        let told = |pad_has_shear| {
+            let asked = serde_json::json!({ "text": text });
+            serde_json::from_value::<Draft>(asked).unwrap().answer(OutputChoice::AsWritten, pad_has_shear)
+        };
+        assert_eq!(told(true).diagnostics, []);
+        let warned = told(false);
+        let line = 1 + text.lines().position(|line| line == "force = \"fy\"").unwrap();
+        assert_eq!(warned.diagnostics.iter().map(|found| found.line).collect::<Vec<_>>(), [line]);
+        assert!(warned.ok);
     }
 }

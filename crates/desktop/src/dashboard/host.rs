@@ -23,6 +23,11 @@ pub trait DashboardHost: Send + Sync {
     /// Which bindings of a profile are played here.
     fn output(&self) -> OutputChoice;
 
+    /// Whether the pad measures forces along the plate.
+    fn pad_has_shear(&self) -> bool {
+        true
+    }
+
     /// A profile by its name. `None` if there is none, or if it is no name: no file outside the folder of profiles is read.
     fn read(&self, name: &str) -> Option<StoredProfile>;
 

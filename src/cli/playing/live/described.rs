@@ -7,14 +7,11 @@ use clap::Args;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::playing::source;
-use crate::cli::printing::written::{printable, say};
 use tactpad::bridge::bridge_parts::PlayingDecoder;
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::bridge::transport::evdev::EvdevOpener;
 use tactpad::firmware_proto::DEFAULT_BAUD;
-use tactpad::pipeline::mapping::read::ReadProfile;
-use tactpad::pipeline::mapping::read::shear::bound_to_shear;
 use tactpad::source::{Origin, Source};
 
 /// The description of a pad.
@@ -136,14 +133,9 @@ impl DescribedPad {
         Ok(PlayingDecoder { name: format!("{} ({name})", decoder.name()), decoder, place: None, file })
     }
 
-    /// Says what of a profile, which was asked for by this name, does nothing on it.
-    pub(super) fn warn_of(&self, named: &str, profile: &ReadProfile) {
-        if self.source.has_shear() {
-            return;
-        }
-        for found in bound_to_shear(profile.text()) {
-            say(found.render(&printable(named)));
-        }
+    /// Whether it measures forces along the plate.
+    pub(super) const fn has_shear(&self) -> bool {
+        self.source.has_shear()
     }
 
     /// Opens it.

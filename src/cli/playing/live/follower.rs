@@ -8,9 +8,11 @@ use std::thread;
 
 use rustix::event::{Timespec, poll};
 
+use super::playing::Audience;
 use super::profile_selection::{FileStamp, ProfileSelection};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
+use crate::cli::printing::written::tell_in_passing;
 use tactpad::bridge::foreground::{Foreground, WindowSystem};
 use tactpad::bridge::profile_update::ProfileUpdate;
 use tactpad::bridge::request::{Request, RequestSender};
@@ -27,16 +29,21 @@ const LOOKS_WITHOUT_DESKTOP: u32 = 20;
 /// Why a profile is played while none is for the program in front.
 const NONE_IS_FOR_IT: &str = "none is for the program in front";
 
-/// Starts to follow what `selection` says. The thread ends with the bridge.
+/// Starts to follow what `selection` says. The thread ends with the bridge. What does nothing on the pad is told to who reads it.
 pub(super) fn start(
     selection: Arc<Mutex<ProfileSelection>>,
     output: OutputChoice,
     sender: RequestSender,
+    audience: Audience,
 ) -> io::Result<()> {
     let mut follower = Follower::new(selection, output);
     thread::Builder::new().name("profiles".into()).spawn(move || {
         loop {
             for update in follower.look() {
+                let warnings = follower.shear_warnings(&update);
+                if audience == Audience::Stderr && !warnings.is_empty() {
+                    tell_in_passing(warnings.trim_end());
+                }
                 if sender.send(Request::UpdateProfile(Box::new(update))).is_err() {
                     return;
                 }
@@ -141,6 +148,13 @@ impl Follower {
         self.sent = choice;
         self.seen = None;
         Some(self.update(read, reason))
+    }
+
+    /// What of the profile of an update does nothing on the pad.
+    fn shear_warnings(&self, update: &ProfileUpdate) -> String {
+        let Ok(read) = &update.read else { return String::new() };
+        let selection = self.selection.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        selection.shear_warnings(&self.sent.name, read)
     }
 
     fn update(&self, read: Result<ReadProfile, String>, reason: Option<String>) -> ProfileUpdate {

@@ -72,11 +72,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
     let described = arguments.source.read(pad, decoder)?;
     let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
-    let named = profile;
-    let profile = profile::read(named, output.choice())?;
-    if let Some(described) = &described {
-        described.warn_of(named, &profile);
-    }
+    let profile = profile::read(profile, output.choice())?;
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), Patience::Limited)?;
     let timing = Timing::default();
     let sink = timing.sink(open_sink(output)?);
@@ -86,6 +82,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pipeline = Pipeline::new(decoder.decoder.clone(), played.clone());
     let audience = Audience::Nobody;
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
+    let host = host.on_pad(described.as_ref(), &profile);
     let mut bridge = Bridge::new(BridgeParts {
         clock: Clock::start(),
         pad: timing.pad(opened),

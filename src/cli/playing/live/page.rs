@@ -76,6 +76,10 @@ impl DashboardHost for Shelf {
         self.output
     }
 
+    fn pad_has_shear(&self) -> bool {
+        self.selection.lock().unwrap_or_else(PoisonError::into_inner).pad_has_shear
+    }
+
     fn read(&self, name: &str) -> Option<StoredProfile> {
         profile::stored(name)
     }

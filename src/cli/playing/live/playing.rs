@@ -21,6 +21,7 @@ use tactpad::bridge::requests::Requests;
 use tactpad::bridge::snapshot::Drops;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::read::ReadProfile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::virtual_pad::firmware::VirtualPad;
 use tactpad::virtual_pad::script::Script;
@@ -136,6 +137,18 @@ impl TerminalHost {
         let selection = Arc::new(Mutex::new(ProfileSelection::of(profile)));
         let profiles = ProfileReader::start(Arc::clone(&selection), output, audience == Audience::Stderr)?;
         Ok(Self { selection, profiles, page: None, audience })
+    }
+
+    /// The same, of a bridge on this pad: what of `profile` does nothing on it is said now, and of others when they are read.
+    pub(super) fn on_pad(self, pad: Option<&DescribedPad>, profile: &ReadProfile) -> Self {
+        let mut selection = self.selection.lock().unwrap_or_else(PoisonError::into_inner);
+        selection.pad_has_shear = pad.is_none_or(DescribedPad::has_shear);
+        let warnings = selection.shear_warnings(&selection.name, profile);
+        drop(selection);
+        if !warnings.is_empty() {
+            say(warnings.trim_end());
+        }
+        self
     }
 
     /// The same, of a bridge that is shown at this address.

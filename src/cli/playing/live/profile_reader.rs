@@ -68,6 +68,8 @@ fn read(
             (requested, read)
         }
     };
+    let (read, warnings) = read;
+    let warnings = warnings + &requested.shear_warnings(&requested.name, &read);
     *lock() = requested;
-    Ok(read)
+    Ok((read, warnings))
 }

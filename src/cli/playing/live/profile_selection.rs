@@ -5,6 +5,9 @@ use std::os::unix::fs::MetadataExt;
 use std::path::PathBuf;
 
 use crate::cli::playing::profile;
+use crate::cli::printing::written::printable;
+use tactpad::pipeline::mapping::read::ReadProfile;
+use tactpad::pipeline::mapping::read::shear::bound_to_shear;
 
 /// The name that selects the profile by the program in the foreground.
 pub(super) const AUTO: &str = "auto";
@@ -23,6 +26,8 @@ pub(super) struct ProfileSelection {
     pub(super) fallback: Option<String>,
     /// Number of profile requests by people so far.
     pub(super) request_count: u64,
+    /// Whether the pad that it is played on measures forces along the plate.
+    pub(super) pad_has_shear: bool,
 }
 
 /// The state of a file, from its metadata: it differs after a write or a replacement.
@@ -49,7 +54,7 @@ impl ProfileSelection {
     pub(super) fn of(argument: &str) -> Self {
         let fallback = fallback(argument).map(str::to_owned);
         let name = fallback.clone().unwrap_or_else(|| argument.to_owned());
-        Self { stamp: FileStamp::of(&name), name, fallback, request_count: 0 }
+        Self { stamp: FileStamp::of(&name), name, fallback, request_count: 0, pad_has_shear: true }
     }
 
     /// The argument of a command line that makes the same selection, in any folder.
@@ -67,7 +72,13 @@ impl ProfileSelection {
             Some(name) => Self::of(name),
             None => Self { stamp: FileStamp::of(&self.name), ..self.clone() },
         };
-        Self { request_count: self.request_count + 1, ..selection }
+        Self { request_count: self.request_count + 1, pad_has_shear: self.pad_has_shear, ..selection }
+    }
+
+    /// What of a profile does nothing on the pad, a line and more for each; nothing if that is fine.
+    pub(super) fn shear_warnings(&self, named: &str, profile: &ReadProfile) -> String {
+        let found = if self.pad_has_shear { Vec::new() } else { bound_to_shear(profile.text()) };
+        found.iter().map(|found| found.render(&printable(named)) + "\n").collect()
     }
 }
 

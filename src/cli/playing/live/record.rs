@@ -82,11 +82,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let described = arguments.source.read(pad, decoder)?;
     let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
-    let named = profile;
-    let profile = profile::read(named, output.choice())?;
-    if let Some(described) = &described {
-        described.warn_of(named, &profile);
-    }
+    let profile = profile::read(profile, output.choice())?;
     let (sink, missing) = output.open_or(|| Newest::default().sink(false))?;
     let patience = patience(&arguments.pad, WaitOption::NotGiven);
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), patience)?;
@@ -99,6 +95,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     say(format_args!("recording {} in {place}", arguments.pad));
     let audience = Audience::Stderr;
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
+    let host = host.on_pad(described.as_ref(), &profile);
     let seconds = arguments.seconds.or(arguments.force_range.then_some(FORCE_RANGE_S));
     let mut bridge = Bridge::new(BridgeParts {
         clock: Clock::start(),

@@ -83,11 +83,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let audience = audience(output);
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let selection = host.selection();
-    let named = profile;
-    let profile = profile::read(named, output.choice())?;
-    if let Some(described) = &described {
-        described.warn_of(named, &profile);
-    }
+    let profile = profile::read(profile, output.choice())?;
+    let host = host.on_pad(described.as_ref(), &profile);
     let patience =
         patience(&arguments.pad, if arguments.wait { WaitOption::Given } else { WaitOption::NotGiven });
     let is_shown = audience == Audience::Nobody;
@@ -108,7 +105,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));
     }
-    follower::start(selection, output.choice(), requests.sender()?)?;
+    follower::start(selection, output.choice(), requests.sender()?, audience)?;
     let mut keeping = PlayKeeping::begin(arguments.keep_play, pad, &decoder)?;
     let mut bridge = Bridge::new(BridgeParts {
         clock: Clock::start(),

@@ -26,6 +26,7 @@ pub struct Balance {
     /// Standard deviation of each channel, µV.
     noise_uv: f64,
     has_shear: bool,
+    standing_n: Option<f32>,
 }
 
 const ROWS: usize = 5;
@@ -42,13 +43,15 @@ pub struct BalanceNumbers {
     pub channels: Vec<[f64; ROWS]>,
     /// Standard deviation of a channel, N on the plate.
     pub noise_n: f64,
+    /// What the weight of who stands on the pad is for a profile, N; `None` where forces are absolute.
+    pub standing_n: Option<f64>,
 }
 
 impl Balance {
     /// A decoder of one to eight channels; `None` for another number of them, and for numbers that are not finite.
     pub fn new(numbers: &BalanceNumbers) -> Option<Self> {
-        let BalanceNumbers { n_per_count, count_bits, channels, noise_n } = numbers;
-        let all = channels.as_flattened().iter().chain([n_per_count, noise_n]);
+        let BalanceNumbers { n_per_count, count_bits, channels, noise_n, standing_n } = numbers;
+        let all = channels.as_flattened().iter().chain([n_per_count, noise_n]).chain(standing_n);
         let is_sound = (1..CHANNELS).contains(&channels.len()) && { all }.all(|number| number.is_finite());
         let mut rows = [[0.0; CHANNELS]; ROWS];
         for (k, channel) in channels.iter().enumerate().take(CHANNELS) {
@@ -61,6 +64,7 @@ impl Balance {
             scale: Scale { uv_per_count: n_per_count * UV_PER_N, count_bits: *count_bits },
             noise_uv: noise_n * UV_PER_N,
             has_shear: rows.iter().take(FZ).flatten().any(|per_uv| *per_uv != 0.0),
+            standing_n: standing_n.map(|n| n as f32),
             rows,
         })
     }
@@ -78,6 +82,11 @@ impl Balance {
     /// Whether it measures forces along the plate.
     pub const fn has_shear(&self) -> bool {
         self.has_shear
+    }
+
+    /// What the weight of who stands on the pad is for a profile, N, where forces are relative to it.
+    pub const fn standing_n(&self) -> Option<f32> {
+        self.standing_n
     }
 
     /// The force into the plate, N; negative for a pull.
@@ -150,7 +159,14 @@ mod tests {
 
     fn cells() -> Balance {
         let channels = CORNERS_MM.map(|[x_mm, y_mm]| [0.0, 0.0, 1.0, x_mm, y_mm]).to_vec();
-        Balance::new(&BalanceNumbers { n_per_count: 1e-3, count_bits: 32, channels, noise_n: 0.01 }).unwrap()
+        Balance::new(&BalanceNumbers {
+            n_per_count: 1e-3,
+            count_bits: 32,
+            channels,
+            noise_n: 0.01,
+            standing_n: None,
+        })
+        .unwrap()
     }
 
     /// What stiff cells read of a force at a place.
@@ -208,6 +224,7 @@ mod tests {
             count_bits: 32,
             channels: vec![[0.0, 0.0, 1.0, 0.0, 0.0]],
             noise_n: 0.0,
+            standing_n: None,
         };
         assert!(Balance::new(&one).is_some());
         assert!(Balance::new(&BalanceNumbers { n_per_count: f64::NAN, ..one.clone() }).is_none());

@@ -9,6 +9,7 @@ pub mod nominal;
 pub mod read;
 pub mod regression;
 pub mod stage;
+pub mod standing;
 pub mod statics;
 pub mod told;
 pub mod touch;
@@ -159,6 +160,14 @@ impl Decoder {
     pub const fn scale(&self) -> Option<Scale> {
         match &self.method {
             Method::Balance(balance) => Some(balance.scale()),
+            _ => None,
+        }
+    }
+
+    /// What the weight of who stands on the pad is for a profile, N, where forces are relative to it.
+    pub const fn standing_n(&self) -> Option<f32> {
+        match &self.method {
+            Method::Balance(balance) => balance.standing_n(),
             _ => None,
         }
     }

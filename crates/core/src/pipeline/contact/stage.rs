@@ -5,6 +5,7 @@ use firmware_proto::contact::ContactSample;
 use firmware_proto::identity::Identity;
 use firmware_proto::sample::Sample;
 
+use super::standing::Standing;
 use super::told;
 use super::touch::{Touch, TouchState};
 use super::uncertainty::Estimate;
@@ -58,6 +59,7 @@ pub struct ContactStage {
     memory: Memory,
     decoder: Decoder,
     touch: Touch,
+    standing: Standing,
     watch: Watch,
     /// Strain decoded last, µV; `None` if the last sample could not be.
     strain: Option<Strain>,
@@ -80,6 +82,7 @@ impl ContactStage {
             thermometer: Thermometer::of(decoder.compensation.thermal),
             memory: Memory::of(&decoder.compensation),
             touch: Touch::new(),
+            standing: Standing::new(decoder.standing_n()),
             watch: Watch::new(decoder.inverse()),
             decoder,
             strain: None,
@@ -103,7 +106,12 @@ impl ContactStage {
         match &self.decoder.method {
             _ if self.told.is_some() => self.told,
             Method::Inverse(inverse) => inverse.estimate(self.strain.as_ref()?),
-            Method::Balance(balance) => balance.estimate(self.strain.as_ref()?),
+            Method::Balance(balance) => {
+                let estimate = balance.estimate(self.strain.as_ref()?)?;
+                let contact = self.standing.of_weight(&estimate.contact)?;
+                let share = f64::from(self.standing.share().unwrap_or(1.0));
+                Some(Estimate { contact, ..estimate.with_forces_times(share) })
+            }
             _ => None,
         }
     }
@@ -273,14 +281,14 @@ impl ContactStage {
         if doubt.is_some() {
             DecodedSample::Doubtful
         } else {
-            DecodedSample::Contact(touched.then_some(contact))
+            DecodedSample::Contact(self.standing.relative(at, touched.then_some(contact)))
         }
     }
 
     /// Does to each part what [`Cause::effects`] says.
     pub fn interrupt(&mut self, cause: Cause) {
         let effects = cause.effects();
-        let Effects { gain, memory, thermometer, touch, watch, .. } = effects;
+        let Effects { gain, memory, thermometer, touch, standing, watch, .. } = effects;
         self.signal.interrupt(&effects);
         if gain == Effect::Forget {
             self.gain = CommonGain::ONE;
@@ -290,6 +298,7 @@ impl ContactStage {
             self.thermometer = Thermometer::of(self.decoder.compensation.thermal);
         }
         self.touch.interrupt(touch);
+        self.standing.interrupt(standing);
         self.watch.interrupt(watch, self.decoder.inverse());
     }
 }

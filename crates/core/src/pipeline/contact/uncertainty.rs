@@ -48,6 +48,18 @@ pub struct Estimate {
     pub misfit: f64,
 }
 
+impl Estimate {
+    /// The same with the forces' uncertainty in another measure of force, which counts so many times as much.
+    #[must_use]
+    pub fn with_forces_times(mut self, ratio: f64) -> Self {
+        let times = |unknown: usize| if unknown < 2 { 1.0 } else { ratio };
+        for (i, row) in self.covariance.iter_mut().enumerate() {
+            row.iter_mut().enumerate().for_each(|(j, value)| *value *= times(i) * times(j));
+        }
+        self
+    }
+}
+
 /// The estimate's dependence on the channels around a contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Linear {

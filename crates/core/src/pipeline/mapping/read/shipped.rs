@@ -1,6 +1,6 @@
 //! The profiles that are inside the program, so that it runs from any folder.
 
-const SHIPPED: [(&str, &str); 14] = [
+const SHIPPED: [(&str, &str); 15] = [
     ("super-mario", include_str!("../../../../../../mappings/super-mario.toml")),
     ("tetris", include_str!("../../../../../../mappings/tetris.toml")),
     ("tank-battle", include_str!("../../../../../../mappings/tank-battle.toml")),
@@ -15,6 +15,7 @@ const SHIPPED: [(&str, &str); 14] = [
     ("tablet", include_str!("../../../../../../mappings/tablet.toml")),
     ("touchpad", include_str!("../../../../../../mappings/touchpad.toml")),
     ("board-seated", include_str!("../../../../../../mappings/board-seated.toml")),
+    ("board-standing", include_str!("../../../../../../mappings/board-standing.toml")),
 ];
 
 /// The names under which profiles are shipped.
@@ -128,7 +129,8 @@ mod tests {
                 "btanks",
                 "tablet",
                 "touchpad",
-                "board-seated"
+                "board-seated",
+                "board-standing"
             ]
         );
         assert!(names().all(|name| text(name).is_some_and(|text| text.starts_with(SCHEMA_LINE))));

@@ -2,6 +2,11 @@
 
 use tactpad::lab::diagnosis::report::{Estimate, Gain, Verdict};
 
+/// A share in whole per cent, `less than 1 %` where that would be none.
+pub(super) fn percent(share: f64) -> String {
+    if share < 0.005 { "less than 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
+}
+
 /// How parameters' names end, and the unit that people read.
 const UNITS: [(&str, &str); 11] = [
     ("uv_per_c", "µV/°C"),

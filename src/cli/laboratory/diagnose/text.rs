@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::numbers::{decoded, estimate, range};
+use super::numbers::{decoded, estimate, percent, range};
 use crate::cli::printing::wrapped::hanging;
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::{
@@ -74,12 +74,12 @@ pub(super) fn proposed(next: &Proposal) -> Option<String> {
 }
 
 fn verdict(diagnosis: &Diagnosis) -> String {
-    let percent = 100.0 * diagnosis.unnamed_share;
+    let unnamed = percent(diagnosis.unnamed_share);
     match diagnosis.verdict {
         Verdict::NoDiscrepancy => "No discrepancy: the model accounts for these rows.".into(),
         Verdict::Explained => "Explained: what the model gets wrong here is what is listed below.".into(),
         Verdict::PartlyExplained => format!(
-            "Partly explained: the causes below hold, but {percent:.0} % of what the model gets wrong here has no \
+            "Partly explained: the causes below hold, but {unnamed} of what the model gets wrong here has no \
              known cause."
         ),
         Verdict::Unexplained if diagnosis.findings.is_empty() => {

@@ -1,5 +1,6 @@
 //! The whole answer in one sentence.
 
+use super::super::numbers::percent;
 use super::super::text::common_gain;
 use super::subject::Subject;
 use super::words::{capital, cause, listed, place, sentence};
@@ -16,7 +17,7 @@ const RIVALS_MAX: usize = 2;
 pub(super) fn headline(subject: &Subject<'_>) -> String {
     let diagnosis = subject.diagnosis;
     let told = capital(&told(diagnosis));
-    let percent = 100.0 * diagnosis.unnamed_share;
+    let unnamed = percent(diagnosis.unnamed_share);
     if let Some(gains) = common_gain(diagnosis) {
         return gains;
     }
@@ -28,7 +29,7 @@ pub(super) fn headline(subject: &Subject<'_>) -> String {
             format!("{told}; noise, background and a model’s usual errors account for the rest.")
         }
         Verdict::PartlyExplained => {
-            format!("{told}; {percent:.0} % of what the model gets wrong has no known cause.")
+            format!("{told}; {unnamed} of what the model gets wrong has no known cause.")
         }
         Verdict::Unexplained if diagnosis.findings.is_empty() => {
             "The model is wrong here, and no known cause accounts for it.".to_owned()

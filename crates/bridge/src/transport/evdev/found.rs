@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use ::evdev::{AbsoluteAxisCode, Device, KeyCode};
+use ::evdev::raw_stream::{RawDevice, enumerate};
+use ::evdev::{AbsoluteAxisCode, KeyCode};
 use tactpad_core::source::codes::InputCode;
 use tactpad_core::source::{Evdev, Origin, Source};
 
@@ -18,7 +19,7 @@ pub struct FoundDevice {
 /// The attached devices that fit, in the order of their nodes. Those that may not be opened are not among them.
 pub fn fitting(source: &Source) -> Vec<FoundDevice> {
     let Origin::Evdev(wanted) = &source.origin else { return Vec::new() };
-    let mut found: Vec<FoundDevice> = ::evdev::enumerate()
+    let mut found: Vec<FoundDevice> = enumerate()
         .filter(|(_, device)| fits(wanted, device))
         .map(|(path, device)| FoundDevice { path, name: device.name().unwrap_or_default().to_owned() })
         .collect();
@@ -27,7 +28,7 @@ pub fn fitting(source: &Source) -> Vec<FoundDevice> {
 }
 
 /// Whether a device is what a description means.
-pub(super) fn fits(wanted: &Evdev, device: &Device) -> bool {
+pub(super) fn fits(wanted: &Evdev, device: &RawDevice) -> bool {
     let name = device.name().unwrap_or_default();
     let is_named = wanted.names.is_empty() || wanted.names.iter().any(|part| name.contains(part.as_str()));
     let reports = |code: &InputCode| match code {

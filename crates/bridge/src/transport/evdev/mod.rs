@@ -3,15 +3,16 @@
 pub mod found;
 mod frames;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::path::{Path, PathBuf};
 
 use ::evdev::raw_stream::RawDevice;
-use ::evdev::{AbsInfo, AbsoluteAxisCode, Device, EventType, InputEvent, KeyCode, SynchronizationCode};
+use ::evdev::{AbsInfo, AbsoluteAxisCode, EventType, InputEvent, SynchronizationCode};
 use firmware_proto::command::Command;
 use rustix::event::epoll;
+use rustix::fs::{Mode, OFlags};
 use rustix::time::{
     Itimerspec, TimerfdClockId, TimerfdFlags, TimerfdTimerFlags, timerfd_create, timerfd_settime,
 };
@@ -23,13 +24,17 @@ use super::pacing::{is_readable, limit, monotonic_us};
 use found::{FoundDevice, fits, fitting};
 use frames::{AxisRange, Change, EvdevFrames};
 
+/// Reads at once after events were lost: more than the kernel's queue of a device holds.
+const DRAIN_READS_MAX: usize = 64;
+
 /// An open input device.
 pub struct EvdevPort {
-    device: Device,
+    device: RawDevice,
     frames: EvdevFrames,
-    /// The same open device, by which it is taken from the desktop while it plays, and given back. The other one would complain on
-    /// standard error that a device which has left is not given back.
-    grip: Option<RawDevice>,
+    /// Whether it is taken from the desktop while it plays.
+    grabs: bool,
+    /// Whether events were lost and the state was not taken anew since.
+    is_lost: bool,
     /// When it was opened, by the monotonic clock: frames count from there.
     origin_us: u64,
     /// Frames that were not read yet.
@@ -64,7 +69,7 @@ impl EvdevOpener {
             return Err(PadError::Unusable(format!("{} is no input device", self.source.name)));
         };
         let path = self.path.clone().map_or_else(|| self.only_one(), Ok)?;
-        let device = Device::open(&path).map_err(|error| open_error(&path, &error))?;
+        let device = open_device(&path).map_err(|error| open_error(&path, &error))?;
         if !fits(wanted, &device) {
             return Err(PadError::Unusable(self.is_another(&path, &device)));
         }
@@ -96,13 +101,19 @@ impl EvdevOpener {
         }
     }
 
-    fn is_another(&self, path: &Path, device: &Device) -> String {
+    fn is_another(&self, path: &Path, device: &RawDevice) -> String {
         let (name, path) = (&self.source.name, path.display());
         let is = device.name().unwrap_or("without a name");
         format!(
             "{path} ({is}) is no {name}: `tactpad devices` lists what fits, `tactpad source show {name}` says what it must report"
         )
     }
+}
+
+/// Opens a node without waiting for anything.
+fn open_device(path: &Path) -> io::Result<RawDevice> {
+    let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    RawDevice::from_fd(rustix::fs::open(path, flags, Mode::empty())?)
 }
 
 fn open_error(path: &Path, error: &io::Error) -> PadError {
@@ -122,46 +133,28 @@ fn open_error(path: &Path, error: &io::Error) -> PadError {
 }
 
 impl EvdevPort {
-    fn new(device: Device, source: &Source, wanted: &Evdev, grabs: bool) -> io::Result<Self> {
-        device.set_nonblocking(true)?;
-        let grip = if grabs { Some(RawDevice::from_fd(device.as_fd().try_clone_to_owned()?)?) } else { None };
-        let mut port = Self::ungrabbed(device, source, wanted, grip)?;
-        port.grip.as_mut().map_or(Ok(()), RawDevice::grab)?;
-        Ok(port)
-    }
-
-    fn ungrabbed(
-        device: Device,
-        source: &Source,
-        wanted: &Evdev,
-        grip: Option<RawDevice>,
-    ) -> io::Result<Self> {
-        let range = |(axis, info): (AbsoluteAxisCode, AbsInfo)| {
-            let (value, minimum) = (info.value(), info.minimum());
-            let range = AxisRange { value, minimum, maximum: info.maximum(), resolution: info.resolution() };
-            (axis.0, range)
-        };
-        let ranges: BTreeMap<u16, AxisRange> = device.get_absinfo()?.map(range).collect();
-        let mut frames = EvdevFrames::new(source, &wanted.channels, ranges);
-        if device.get_key_state()?.contains(KeyCode::BTN_TOUCH) {
-            frames.touched_at_opening();
-        }
+    fn new(device: RawDevice, source: &Source, wanted: &Evdev, grabs: bool) -> io::Result<Self> {
         let either = epoll::create(epoll::CreateFlags::CLOEXEC)?;
         let timer =
             timerfd_create(TimerfdClockId::Monotonic, TimerfdFlags::CLOEXEC | TimerfdFlags::NONBLOCK)?;
         for fd in [device.as_fd(), timer.as_fd()] {
             epoll::add(&either, fd, epoll::EventData::new_u64(0), epoll::EventFlags::IN)?;
         }
-        let port = Self {
+        let mut port = Self {
             device,
-            frames,
-            grip,
+            frames: EvdevFrames::new(source, wanted),
+            grabs,
+            is_lost: true,
             origin_us: monotonic_us(),
             out: Vec::new(),
             is_gone: false,
             either,
             timer,
         };
+        port.synchronize()?;
+        if port.grabs {
+            port.device.grab()?;
+        }
         port.set_timer()?;
         Ok(port)
     }
@@ -169,24 +162,69 @@ impl EvdevPort {
     /// Takes what the device has reported by `now_us`.
     fn take(&mut self, now_us: u64) -> io::Result<()> {
         // What is not handed over yet comes first: a device that floods must not fill the memory.
-        if self.is_gone || !self.out.is_empty() || !is_readable(self.device.as_fd())? {
+        if self.is_gone || !self.out.is_empty() {
             return Ok(());
         }
-        let changes = self.device.fetch_events().map(|events| events.filter_map(change).collect::<Vec<_>>());
-        match changes {
-            Ok(changes) => {
-                for change in changes {
-                    self.frames.take(now_us, change, &mut self.out);
+        if self.hear(now_us).is_err() {
+            // A device that is gone is readable for ever.
+            epoll::delete(&self.either, self.device.as_fd())?;
+            self.is_gone = true;
+        }
+        Ok(())
+    }
+
+    fn hear(&mut self, now_us: u64) -> io::Result<()> {
+        if !self.is_lost && is_readable(self.device.as_fd())? {
+            for event in available(&mut self.device)? {
+                match change(event) {
+                    Some(Change::Lost) => {
+                        self.is_lost = true;
+                        break;
+                    }
+                    Some(change) => self.frames.take(now_us, change, &mut self.out),
+                    None => {}
                 }
             }
-            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) => {}
-            Err(_) => {
-                // A device that is gone is readable for ever.
-                epoll::delete(&self.either, self.device.as_fd())?;
-                self.is_gone = true;
+        }
+        if self.is_lost {
+            self.synchronize()?;
+            if !self.is_lost {
+                self.frames.take(now_us, Change::End, &mut self.out);
             }
         }
         Ok(())
+    }
+
+    /// Throws away what was reported, and takes the state as it is. While a device floods it stays lost, and nothing is sent.
+    fn synchronize(&mut self) -> io::Result<()> {
+        for _ in 0..DRAIN_READS_MAX {
+            if is_readable(self.device.as_fd())? {
+                available(&mut self.device)?;
+                continue;
+            }
+            let (down, ranges) = (self.down()?, self.ranges()?);
+            // Reports that came meanwhile may be older than what was asked.
+            if !is_readable(self.device.as_fd())? {
+                self.frames.set_state(down, ranges);
+                self.is_lost = false;
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The buttons that are down, by the kernel. Asking throws away those reports of buttons that were not read yet.
+    fn down(&self) -> io::Result<BTreeSet<u16>> {
+        Ok(self.device.get_key_state()?.iter().map(|button| button.0).collect())
+    }
+
+    fn ranges(&self) -> io::Result<BTreeMap<u16, AxisRange>> {
+        let range = |(axis, info): (AbsoluteAxisCode, AbsInfo)| {
+            let (value, minimum) = (info.value(), info.minimum());
+            let range = AxisRange { value, minimum, maximum: info.maximum(), resolution: info.resolution() };
+            (axis.0, range)
+        };
+        Ok(self.device.get_absinfo()?.map(range).collect())
     }
 
     /// Lets the descriptor poll readable when the state is to be sent again, or at once if frames or the end are to be told.
@@ -199,13 +237,26 @@ impl EvdevPort {
     }
 }
 
+/// The events that can be read at once; none where another reader was faster.
+fn available(device: &mut RawDevice) -> io::Result<Vec<InputEvent>> {
+    match device.fetch_events() {
+        Ok(events) => Ok(events.collect()),
+        Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) => {
+            Ok(Vec::new())
+        }
+        Err(error) => Err(error),
+    }
+}
+
 fn change(event: InputEvent) -> Option<Change> {
     match event.event_type() {
         EventType::ABSOLUTE => Some(Change::Axis(event.code(), event.value())),
         EventType::KEY => Some(Change::Button(event.code(), event.value() != 0)),
-        EventType::SYNCHRONIZATION => {
-            (event.code() == SynchronizationCode::SYN_REPORT.0).then_some(Change::End)
-        }
+        EventType::SYNCHRONIZATION => match SynchronizationCode(event.code()) {
+            SynchronizationCode::SYN_REPORT => Some(Change::End),
+            SynchronizationCode::SYN_DROPPED => Some(Change::Lost),
+            _ => None,
+        },
         _ => None,
     }
 }
@@ -218,7 +269,7 @@ impl Transport for EvdevPort {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         let now_us = monotonic_us().saturating_sub(self.origin_us);
         self.take(now_us)?;
-        if !self.is_gone {
+        if !self.is_gone && !self.is_lost {
             self.frames.repeat(now_us, &mut self.out);
         }
         let count = self.out.len().min(bytes.len());
@@ -238,8 +289,8 @@ impl Transport for EvdevPort {
 
     fn pause(&mut self, is_paused: bool) {
         // One that left meanwhile is noticed by who reads next.
-        if let Some(grip) = &mut self.grip {
-            let _ = if is_paused { grip.ungrab() } else { grip.grab() };
+        if self.grabs {
+            let _ = if is_paused { self.device.ungrab() } else { self.device.grab() };
         }
     }
 }

@@ -128,6 +128,16 @@ impl EvdevFrames {
         self.down = down;
     }
 
+    /// The buttons that are down.
+    pub(super) const fn down(&self) -> &BTreeSet<u16> {
+        &self.down
+    }
+
+    /// Whether a button is down, or a tool in range.
+    pub(super) fn is_anything_down(&self) -> bool {
+        !self.down.is_empty()
+    }
+
     /// Takes what the device reported by `now_us`, and appends a frame for each whole state to `out`.
     pub(super) fn take(&mut self, now_us: u64, change: Change, out: &mut Vec<u8>) {
         match change {

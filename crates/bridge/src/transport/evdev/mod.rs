@@ -27,6 +27,10 @@ use frames::{AxisRange, Change, EvdevFrames};
 /// Reads at once after events were lost: more than the kernel's queue of a device holds.
 const DRAIN_READS_MAX: usize = 64;
 
+/// While something is down and nothing is reported, the kernel is asked for the true state so often, µs: another program may have taken
+/// the device, and the lift with it.
+const CHECK_US: u64 = 100_000;
+
 /// An open input device.
 pub struct EvdevPort {
     device: RawDevice,
@@ -35,6 +39,10 @@ pub struct EvdevPort {
     grabs: bool,
     /// Whether events were lost and the state was not taken anew since.
     is_lost: bool,
+    /// Whether it is to be taken from the desktop as soon as nothing on it is down: who takes it gets the releases.
+    wants_grab: bool,
+    /// When the true state was asked last.
+    checked_us: u64,
     /// When it was opened, by the monotonic clock: frames count from there.
     origin_us: u64,
     /// Frames that were not read yet.
@@ -145,6 +153,8 @@ impl EvdevPort {
             frames: EvdevFrames::new(source, wanted),
             grabs,
             is_lost: true,
+            wants_grab: grabs,
+            checked_us: 0,
             origin_us: monotonic_us(),
             out: Vec::new(),
             is_gone: false,
@@ -152,9 +162,7 @@ impl EvdevPort {
             timer,
         };
         port.synchronize()?;
-        if port.grabs {
-            port.device.grab()?;
-        }
+        port.grab_if_untouched()?;
         port.set_timer()?;
         Ok(port)
     }
@@ -166,11 +174,19 @@ impl EvdevPort {
             return Ok(());
         }
         if self.hear(now_us).is_err() {
-            // A device that is gone is readable for ever.
-            epoll::delete(&self.either, self.device.as_fd())?;
-            self.is_gone = true;
+            self.leave()?;
         }
         Ok(())
+    }
+
+    /// The device is gone, or another program has it.
+    fn leave(&mut self) -> io::Result<()> {
+        if !self.is_gone {
+            self.is_gone = true;
+            // One that is gone is readable for ever.
+            epoll::delete(&self.either, self.device.as_fd())?;
+        }
+        self.set_timer()
     }
 
     fn hear(&mut self, now_us: u64) -> io::Result<()> {
@@ -185,6 +201,9 @@ impl EvdevPort {
                     None => {}
                 }
             }
+        } else if self.frames.is_anything_down() && self.checked_us + CHECK_US <= now_us {
+            self.checked_us = now_us;
+            self.is_lost |= self.down()? != *self.frames.down();
         }
         if self.is_lost {
             self.synchronize()?;
@@ -192,7 +211,18 @@ impl EvdevPort {
                 self.frames.take(now_us, Change::End, &mut self.out);
             }
         }
-        Ok(())
+        self.grab_if_untouched()
+    }
+
+    /// Takes the device from the desktop, if that is wanted and nothing on it is down.
+    fn grab_if_untouched(&mut self) -> io::Result<()> {
+        let is_due = self.wants_grab && !self.device.is_grabbed();
+        if !is_due || self.is_lost || self.frames.is_anything_down() || is_readable(self.device.as_fd())? {
+            return Ok(());
+        }
+        // The kernel may know better than what was read.
+        self.is_lost = !self.down()?.is_empty();
+        if self.is_lost { Ok(()) } else { self.device.grab() }
     }
 
     /// Throws away what was reported, and takes the state as it is. While a device floods it stays lost, and nothing is sent.
@@ -227,9 +257,9 @@ impl EvdevPort {
         Ok(self.device.get_absinfo()?.map(range).collect())
     }
 
-    /// Lets the descriptor poll readable when the state is to be sent again, or at once if frames or the end are to be told.
+    /// Lets the descriptor poll readable when the state is to be sent again, or at once if more is to be done.
     fn set_timer(&self) -> io::Result<()> {
-        let is_more = !self.out.is_empty() || self.is_gone;
+        let is_more = !self.out.is_empty() || self.is_gone || self.is_lost;
         let due_us = if is_more { 1 } else { self.origin_us + self.frames.due_us() };
         let timer = Itimerspec { it_interval: limit(0), it_value: limit(due_us) };
         timerfd_settime(&self.timer, TimerfdTimerFlags::ABSTIME, &timer)?;
@@ -276,7 +306,10 @@ impl Transport for EvdevPort {
         bytes.iter_mut().zip(self.out.drain(..count)).for_each(|(to, from)| *to = from);
         self.set_timer()?;
         match (count, self.is_gone) {
-            (0, true) => Err(io::Error::new(io::ErrorKind::BrokenPipe, "the device was unplugged")),
+            (0, true) => Err(io::Error::new(
+                io::ErrorKind::BrokenPipe,
+                "the device was unplugged, or another program took it",
+            )),
             (0, false) => Err(io::ErrorKind::WouldBlock.into()),
             (count, _) => Ok(count),
         }
@@ -288,9 +321,11 @@ impl Transport for EvdevPort {
     }
 
     fn pause(&mut self, is_paused: bool) {
-        // One that left meanwhile is noticed by who reads next.
-        if self.grabs {
-            let _ = if is_paused { self.device.ungrab() } else { self.device.grab() };
+        self.wants_grab = self.grabs && !is_paused;
+        let done = if is_paused { self.device.ungrab() } else { self.grab_if_untouched() };
+        if done.is_err() {
+            // Who reads next is told.
+            drop(self.leave());
         }
     }
 }

@@ -258,8 +258,18 @@ fn read_contact(root: &Section<'_>, table: &Section<'_>, findings: &mut Findings
         (None, Some(_)) => return None,
         (force, _) => force.map(|force| force.value),
     };
+    let place = [x?.value, y?.value];
+    let is_of_fingers = |axis: &u16| *axis >= codes::MT_FIRST;
+    let of_fingers = place.iter().chain(&force).filter(|axis| is_of_fingers(axis)).count();
+    if of_fingers != 0 && of_fingers != place.iter().chain(&force).count() {
+        findings.error(
+            table.at,
+            "[contact] mixes axes of fingers, ABS_MT_…, with others",
+            "take all from ABS_MT_…, or none",
+        );
+    }
     Some(Touching {
-        place: [x?.value, y?.value],
+        place,
         force,
         full_share: full_share?.value,
         full_n: full_n?.value,
@@ -567,6 +577,29 @@ mod tests {
         assert!(messages("").len() >= 5, "{:?}", messages(""));
         let both = format!("{CELLS}[wrench]\nmoment_unit = \"Nm\"\n");
         assert!(messages(&both).iter().any(|found| found.contains("there are \"cell\" and \"wrench\"")));
+    }
+
+    #[test]
+    fn a_contact_is_of_fingers_or_of_a_tool() {
+        let text = |x: &str, y: &str, force: &str| {
+            format!(
+                "schema = 1\nname = \"pad\"\ntitle = \"A pad\"\n[evdev]\nhas = [\"BTN_TOUCH\"]\n[contact]\nx = \"{x}\"\ny = \"{y}\"\n\
+                 force = \"{force}\"\n"
+            )
+        };
+        let (fingers, tool) = (
+            ["ABS_MT_POSITION_X", "ABS_MT_POSITION_Y", "ABS_MT_PRESSURE"],
+            ["ABS_X", "ABS_Y", "ABS_PRESSURE"],
+        );
+        for mixture in 0..8 {
+            let [x, y, force] = [0, 1, 2].map(|k| if mixture >> k & 1 == 1 { fingers[k] } else { tool[k] });
+            let found = messages(&text(x, y, force));
+            if mixture % 7 == 0 {
+                assert_eq!(found, Vec::<String>::new());
+            } else {
+                assert_eq!(found, ["6: [contact] mixes axes of fingers, ABS_MT_…, with others"]);
+            }
+        }
     }
 
     #[test]

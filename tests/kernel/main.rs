@@ -123,6 +123,11 @@ fn a_tablet_that_leaves_lets_go_and_comes_back() {
 }
 
 #[test]
+fn owned_pads_are_known_at_another_node() {
+    in_guest("owned_pads_are_known_at_another_node", owned_pads::moved);
+}
+
+#[test]
 fn a_recorded_pen_replays_byte_for_byte() {
     in_guest("a_recorded_pen_replays_byte_for_byte", owned_pads::recorded);
 }

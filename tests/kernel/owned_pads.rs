@@ -387,7 +387,7 @@ pub(crate) fn down_at_the_start() {
     device.leave();
     pause(100);
     desktop.read_available();
-    assert_eq!(desktop.stamp_of("BTN_TOUCH", 0).is_some(), true, "{:?}", desktop.seen);
+    assert!(desktop.stamp_of("BTN_TOUCH", 0).is_some(), "{:?}", desktop.seen);
     desktop.seen.clear();
     device.touch(0.9, 0.5, 1.0);
     pause(150);
@@ -433,6 +433,31 @@ pub(crate) fn replugged() {
         // It is looked for four times a second.
         pause(600);
     }
+}
+
+/// A device that comes back at another node plays on, and a stranger's that has its old node is left alone.
+pub(crate) fn moved() {
+    let device = Device::plug_in(SHAPES[0]);
+    let old_node = device.node.clone();
+    let (mut program, mut reader) = start(&format!("tablet:{}", old_node.display()), &[]);
+    drop(device);
+    pause(200);
+    let mut stranger = Device::plug_in(SHAPES[1]);
+    assert_eq!(stranger.node, old_node);
+    pause(600);
+    let mut device = Device::plug_in(SHAPES[0]);
+    assert_ne!(device.node, old_node);
+    pause(800);
+    stranger.touch(0.1, 0.5, 1.0);
+    pause(150);
+    device.touch(0.9, 0.5, 1.0);
+    pause(150);
+    device.lift();
+    stranger.lift();
+    pause(150);
+    reader.read_available();
+    assert_eq!(reader.edges(), [("ABS_HAT0X", 1), ("ABS_HAT0X", 0)], "{}", program.complaints());
+    assert!(!program.has_ended());
 }
 
 /// A board of four cells that the system reports as axes: it is leaned on in four directions, and stamped on.

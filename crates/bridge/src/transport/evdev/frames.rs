@@ -13,6 +13,7 @@ use firmware_proto::link::encode_message;
 use firmware_proto::sample::Status;
 use tactpad_core::pipeline::contact::balance::PLATE_RADIUS_MM;
 use tactpad_core::quantity::WEIGHT_N_PER_G;
+use tactpad_core::source::codes::{BTN_TOUCH, MT_FIRST, MT_SLOT, MT_TRACKING_ID};
 use tactpad_core::source::{Evdev, FULL_N, Measures, Source, Touching};
 
 /// The last state is sent again after so long, µs.
@@ -26,11 +27,6 @@ const SLOTS: usize = 16;
 
 /// Pen, eraser, brush, pencil and airbrush.
 const TOOLS: RangeInclusive<u16> = 0x140..=0x144;
-
-const BTN_TOUCH: u16 = 0x14a;
-const MT_SLOT: u16 = 0x2f;
-const MT_TRACKING_ID: u16 = 0x39;
-const MT_FIRST: u16 = 0x30;
 
 /// The range of an axis, by the kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -21,7 +21,7 @@ use tactpad_core::source::{Evdev, Origin, Source};
 use super::Transport;
 use super::opener::PadError;
 use super::pacing::{is_readable, limit, monotonic_us};
-use found::{FoundDevice, fits, fitting};
+use found::{FoundDevice, attached, reading_command};
 use frames::{AxisRange, Change, EvdevFrames};
 
 /// Reads at once after events were lost: more than the kernel's queue of a device holds.
@@ -53,37 +53,44 @@ pub struct EvdevPort {
     timer: OwnedFd,
 }
 
-/// Opens a described device again and again.
-#[derive(Clone, Debug)]
+/// Opens a described device again and again, and remembers which one it was.
+#[derive(Debug)]
 pub struct EvdevOpener {
     source: Source,
     path: Option<PathBuf>,
     grabs: bool,
+    /// The device that was opened last.
+    last: Option<FoundDevice>,
 }
 
 impl EvdevOpener {
     /// An opener for the device at `path`, or the only one that fits. With `keeps_pointer` it goes on moving the pointer.
     pub fn new(source: Source, path: Option<PathBuf>, keeps_pointer: bool) -> Self {
         let grabs = matches!(&source.origin, Origin::Evdev(evdev) if evdev.grabs) && !keeps_pointer;
-        Self { source, path, grabs }
+        Self { source, path, grabs, last: None }
     }
 
     /// Opens the device if it is there.
     ///
     /// # Errors
     /// See [`PadError`]; the text is one sentence with the way out.
-    pub fn open(&self) -> Result<Box<dyn Transport>, PadError> {
+    pub fn open(&mut self) -> Result<Box<dyn Transport>, PadError> {
         let Origin::Evdev(wanted) = &self.source.origin else {
             return Err(PadError::Unusable(format!("{} is no input device", self.source.name)));
         };
-        let path = self.path.clone().map_or_else(|| self.only_one(), Ok)?;
+        let path = self.node(wanted)?;
         let device = open_device(&path).map_err(|error| open_error(&path, &error))?;
-        if !fits(wanted, &device) {
-            return Err(PadError::Unusable(self.is_another(&path, &device)));
+        let found = FoundDevice::opened(&path, &device);
+        if !found.fits(&self.source) {
+            return Err(PadError::Unusable(self.is_another(&found)));
         }
         let port = EvdevPort::new(device, &self.source, wanted, self.grabs);
         match port {
-            Ok(port) => Ok(Box::new(port)),
+            Ok(port) => {
+                // A link that is named, as those in /dev/input/by-id, says by itself which device is meant.
+                self.last = (!path.is_symlink()).then_some(found);
+                Ok(Box::new(port))
+            }
             Err(error) if error.raw_os_error() == Some(rustix::io::Errno::BUSY.raw_os_error()) => {
                 Err(PadError::Denied(format!(
                     "{} is taken by another program: end that, or play beside it with --no-grab",
@@ -94,14 +101,35 @@ impl EvdevOpener {
         }
     }
 
-    fn only_one(&self) -> Result<PathBuf, PadError> {
+    /// The node to open. The kernel numbers devices as they come, so one that was open is known by what it tells.
+    fn node(&self, wanted: &Evdev) -> Result<PathBuf, PadError> {
+        if let (Some(path), None) = (&self.path, &self.last) {
+            return Ok(path.clone());
+        }
+        let mut fitting = attached(&wanted.names);
+        fitting.retain(|found| found.fits(&self.source));
+        self.choose(&fitting)
+    }
+
+    /// The node of the device that is meant among those that fit.
+    fn choose(&self, fitting: &[FoundDevice]) -> Result<PathBuf, PadError> {
+        if let Some(last) = &self.last {
+            let same = fitting.iter().filter(|found| found.is_same(last));
+            if let Some(found) = same.max_by_key(|found| found.path == last.path) {
+                return Ok(found.path.clone());
+            }
+        }
         let name = &self.source.name;
-        match &fitting(&self.source)[..] {
-            [found] => Ok(found.path.clone()),
-            [] => Err(PadError::NotThere(format!(
-                "no device is attached that fits {name}, or it may not be read: plug it in, and see `tactpad devices`"
+        match (&self.path, fitting) {
+            (Some(path), _) => Err(PadError::NotThere(format!(
+                "the device that was {name}:{} is gone: plug it in",
+                path.display()
             ))),
-            several => {
+            (None, [found]) => Ok(found.path.clone()),
+            (None, []) => Err(PadError::NotThere(format!(
+                "no device is attached that fits {name}: plug it in, and see `tactpad devices`"
+            ))),
+            (None, several) => {
                 let told = |found: &FoundDevice| format!("{name}:{} ({})", found.path.display(), found.name);
                 let list = several.iter().map(told).collect::<Vec<_>>().join(", ");
                 Err(PadError::Unusable(format!("several devices fit, choose one with --pad: {list}")))
@@ -109,9 +137,8 @@ impl EvdevOpener {
         }
     }
 
-    fn is_another(&self, path: &Path, device: &RawDevice) -> String {
-        let (name, path) = (&self.source.name, path.display());
-        let is = device.name().unwrap_or("without a name");
+    fn is_another(&self, found: &FoundDevice) -> String {
+        let (name, path, is) = (&self.source.name, found.path.display(), &found.name);
         format!(
             "{path} ({is}) is no {name}: `tactpad devices` lists what fits, `tactpad source show {name}` says what it must report"
         )
@@ -125,11 +152,11 @@ fn open_device(path: &Path) -> io::Result<RawDevice> {
 }
 
 fn open_error(path: &Path, error: &io::Error) -> PadError {
-    let path = path.display();
+    let (path, command) = (path.display(), reading_command(path));
     match error.kind() {
         io::ErrorKind::NotFound => PadError::NotThere(format!("{path} is gone: plug the device in")),
         io::ErrorKind::PermissionDenied => PadError::Denied(format!(
-            "no permission to read {path}: `sudo setfacl -m u:$USER:r {path}` gives it until the device is unplugged"
+            "no permission to read {path}: `{command}` gives it until the device is unplugged"
         )),
         _ if error.raw_os_error() == Some(rustix::io::Errno::NODEV.raw_os_error()) => {
             PadError::NotThere(format!("{path} is gone: plug the device in"))
@@ -327,5 +354,34 @@ impl Transport for EvdevPort {
             // Who reads next is told.
             drop(self.leave());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tactpad_core::source::{read, shipped};
+
+    use super::*;
+
+    fn at(node: &str, name: &str) -> FoundDevice {
+        let mut found = FoundDevice::default();
+        (found.path, found.name) = (node.into(), name.into());
+        found
+    }
+
+    #[test]
+    fn a_device_is_found_again_at_another_node_and_a_strangers_is_left_alone() {
+        let source = read::read(shipped::text("tablet").unwrap()).0.unwrap();
+        let (old, moved, other) = (at("event5", "Mine"), at("event7", "Mine"), at("event5", "Other"));
+        let mut opener = EvdevOpener::new(source, None, false);
+        assert_eq!(opener.choose(std::slice::from_ref(&old)), Ok("event5".into()));
+        assert!(matches!(opener.choose(&[]), Err(PadError::NotThere(_))));
+        assert!(matches!(opener.choose(&[moved.clone(), other.clone()]), Err(PadError::Unusable(_))));
+        opener.last = Some(old.clone());
+        assert_eq!(opener.choose(&[other.clone(), moved.clone()]), Ok("event7".into()));
+        assert_eq!(opener.choose(&[moved.clone(), old]), Ok("event5".into()));
+        opener.path = Some("event5".into());
+        assert_eq!(opener.choose(&[moved]), Ok("event7".into()));
+        assert!(matches!(opener.choose(&[other]), Err(PadError::NotThere(_))));
     }
 }

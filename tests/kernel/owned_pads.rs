@@ -517,6 +517,24 @@ pub(crate) fn board() {
     pause(300);
     reader.read_available();
     assert_eq!(reader.edges(), [("BTN_SOUTH", 1), ("BTN_SOUTH", 0)], "a stamp");
+    // It stalls under a load: the direction is let go, and plays again when it is back.
+    reader.seen.clear();
+    load(50.0, 0.5, 0.0);
+    pause(2_000);
+    reader.read_available();
+    assert_eq!(reader.edges(), [("ABS_HAT0X", 1), ("ABS_HAT0X", 0)], "a stall");
+    let held_ms = (reader.seen[1].at_ns - reader.seen[0].at_ns) / MS;
+    assert!((900..1_200).contains(&held_ms), "held {held_ms} ms");
+    println!("a board that stalls lets go after {held_ms} ms");
+    load(0.0, 0.0, 0.0);
+    pause(600);
+    reader.seen.clear();
+    load(50.0, -0.5, 0.0);
+    pause(200);
+    load(0.0, 0.0, 0.0);
+    pause(200);
+    reader.read_available();
+    assert_eq!(reader.edges(), [("ABS_HAT0X", -1), ("ABS_HAT0X", 0)], "after a stall");
 }
 
 /// What a pen did is recorded as frames, and replays to the same events, the long press of a still pen among them.

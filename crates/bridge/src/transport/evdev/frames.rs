@@ -74,6 +74,10 @@ pub(super) struct EvdevFrames {
     has_tools: bool,
     /// Whether something has touched the device since its state was taken anew: that is no contact before it lifts.
     is_stale: bool,
+    /// After so long without an event nothing is sent, µs.
+    silent_us: Option<u64>,
+    /// When the device was heard last.
+    heard_us: u64,
     sequence: u32,
     sent_us: u64,
 }
@@ -105,6 +109,8 @@ impl EvdevFrames {
             down: BTreeSet::new(),
             has_tools: false,
             is_stale: false,
+            silent_us: wanted.silent_ms.map(|ms| u64::from(ms) * 1_000),
+            heard_us: 0,
             sequence: 0,
             sent_us: 0,
         }
@@ -136,6 +142,7 @@ impl EvdevFrames {
 
     /// Takes what the device reported by `now_us`, and appends a frame for each whole state to `out`.
     pub(super) fn take(&mut self, now_us: u64, change: Change, out: &mut Vec<u8>) {
+        self.heard_us = now_us;
         match change {
             Change::Axis(MT_SLOT, value) => self.slot = usize::try_from(value).unwrap_or(SLOTS),
             Change::Axis(MT_TRACKING_ID, value) => self.track(value >= 0),
@@ -153,14 +160,22 @@ impl EvdevFrames {
         }
     }
 
-    /// When [`Self::repeat`] is to be called if nothing comes before.
-    pub(super) const fn due_us(&self) -> u64 {
-        self.sent_us + REPEAT_US
+    /// When [`Self::repeat`] is to be called if nothing comes before; `None` while the device's silence is no rest.
+    pub(super) fn due_us(&self) -> Option<u64> {
+        let due_us = self.sent_us + REPEAT_US;
+        let is_silent = self.silent_us.is_some_and(|silent_us| due_us >= self.heard_us + silent_us);
+        (!is_silent || self.is_at_rest()).then_some(due_us)
+    }
+
+    /// Whether all channels are 0: then nothing lies on the device, and nothing changes.
+    fn is_at_rest(&self) -> bool {
+        let Kind::Channels(channels) = &self.kind else { return false };
+        channels.iter().all(|axis| value(&self.axes, *axis) == 0)
     }
 
     /// Appends the state to `out` once more, if that is due at `now_us`.
     pub(super) fn repeat(&mut self, now_us: u64, out: &mut Vec<u8>) {
-        if self.due_us() <= now_us {
+        if self.due_us().is_some_and(|due_us| due_us <= now_us) {
             self.send(now_us, out);
         }
     }
@@ -480,6 +495,28 @@ mod tests {
             assert_eq!(pad.contact(&finger(slot, 1, 500)), None, "{slot}");
         }
         assert!(pad.contact(&finger(0, 1, 500)).is_some());
+    }
+
+    #[test]
+    fn a_board_that_stalls_under_a_load_repeats_nothing() {
+        let ranges: Vec<_> = [0x12, 0x10, 0x13, 0x11].map(|axis| (axis, range(0, 65_535, 0))).into();
+        let mut board = Device::of("balance-board", &ranges);
+        let frames = &mut board.frames;
+        let mut out = Vec::new();
+        let mut repeats = |frames: &mut EvdevFrames, from_us: u64| {
+            let mut now_us = from_us;
+            while let Some(due_us) = frames.due_us().filter(|due_us| *due_us < from_us + 5_000_000) {
+                now_us = due_us;
+                frames.repeat(now_us, &mut out);
+            }
+            now_us - from_us
+        };
+        assert!(repeats(frames, 0) > 4_900_000, "nobody is on it");
+        frames.take(5_000_000, Axis(0x12, 100), &mut Vec::new());
+        frames.take(5_000_000, End, &mut Vec::new());
+        assert_eq!(repeats(frames, 5_000_000), 995_000);
+        frames.take(9_000_000, End, &mut Vec::new());
+        assert_eq!(repeats(frames, 9_000_000), 995_000, "it is heard again");
     }
 
     #[test]

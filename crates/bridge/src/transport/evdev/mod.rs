@@ -31,6 +31,9 @@ const DRAIN_READS_MAX: usize = 64;
 /// the device, and the lift with it.
 const CHECK_US: u64 = 100_000;
 
+/// A timer of 0 never fires.
+const NEVER: u64 = 0;
+
 /// An open input device.
 pub struct EvdevPort {
     device: RawDevice,
@@ -287,7 +290,8 @@ impl EvdevPort {
     /// Lets the descriptor poll readable when the state is to be sent again, or at once if more is to be done.
     fn set_timer(&self) -> io::Result<()> {
         let is_more = !self.out.is_empty() || self.is_gone || self.is_lost;
-        let due_us = if is_more { 1 } else { self.origin_us + self.frames.due_us() };
+        let due_us = self.frames.due_us().map_or(NEVER, |due_us| self.origin_us + due_us);
+        let due_us = if is_more { 1 } else { due_us };
         let timer = Itimerspec { it_interval: limit(0), it_value: limit(due_us) };
         timerfd_settime(&self.timer, TimerfdTimerFlags::ABSTIME, &timer)?;
         Ok(())

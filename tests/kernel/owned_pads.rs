@@ -324,7 +324,7 @@ pub(crate) fn overflowed() {
                 if k == at {
                     device.lift();
                 }
-                let (x, axis) = (0.2 + f64::from(k) * 1e-3, if device.is_pen() { PEN[0] } else { MT[0] });
+                let (x, axis) = (0.69 + f64::from(k) * 1e-3, if device.is_pen() { PEN[0] } else { MT[0] });
                 let (minimum, maximum, _) = shape.ranges[0];
                 let x = f64::from(minimum) + x * f64::from(maximum - minimum);
                 device.emit(&[(EventType::ABSOLUTE, axis.0, x as i32)]);

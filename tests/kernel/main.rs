@@ -100,8 +100,31 @@ fn a_tablet_moves_no_pointer_while_it_plays_and_is_given_back() {
 }
 
 #[test]
+fn owned_pads_hold_nothing_after_events_were_lost() {
+    in_guest("owned_pads_hold_nothing_after_events_were_lost", owned_pads::overflowed);
+}
+
+#[test]
+fn owned_pads_that_another_program_takes_let_go() {
+    in_guest("owned_pads_that_another_program_takes_let_go", owned_pads::taken);
+}
+
+#[test]
+fn owned_pads_that_are_touched_at_the_start_leave_the_desktop_nothing_held() {
+    in_guest(
+        "owned_pads_that_are_touched_at_the_start_leave_the_desktop_nothing_held",
+        owned_pads::down_at_the_start,
+    );
+}
+
+#[test]
 fn a_tablet_that_leaves_lets_go_and_comes_back() {
     in_guest("a_tablet_that_leaves_lets_go_and_comes_back", owned_pads::replugged);
+}
+
+#[test]
+fn owned_pads_are_known_at_another_node() {
+    in_guest("owned_pads_are_known_at_another_node", owned_pads::moved);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use evdev::raw_stream::RawDevice;
 use evdev::uinput::VirtualDevice;
 use evdev::{
     AbsInfo, AbsoluteAxisCode, AttributeSet, BusType, EventType, InputEvent, InputId, KeyCode, PropType,
@@ -160,6 +161,11 @@ impl Device {
         ]);
     }
 
+    /// A pen leaves the range.
+    fn leave(&mut self) {
+        self.emit(&[(EventType::KEY, KeyCode::BTN_TOOL_PEN.0, 0)]);
+    }
+
     fn lift(&mut self) {
         if self.is_pen() {
             let pressure = AbsoluteAxisCode::ABS_PRESSURE.0;
@@ -201,6 +207,11 @@ fn start(address: &str, more: &[&str]) -> (Running, Reader) {
 fn ask(request: &str) {
     let status = std::process::Command::new(TACTPAD).args(["ctl", request]).status();
     assert!(status.expect("ctl runs").success(), "{request}");
+}
+
+fn status() -> String {
+    let output = std::process::Command::new(TACTPAD).args(["ctl", "status", "--json"]).output();
+    String::from_utf8(output.expect("ctl runs").stdout).expect("text")
 }
 
 fn devices() -> String {
@@ -266,6 +277,7 @@ pub(crate) fn grabbed() {
         desktop.seen.clear();
         device.touch(0.3, 0.4, 0.1);
         device.lift();
+        device.leave();
         pause(20);
         desktop.read_available();
         assert_eq!(!desktop.seen.is_empty(), is_heard, "{what}: {:?}", desktop.seen);
@@ -294,6 +306,112 @@ pub(crate) fn grabbed() {
     moves(&mut device, "with --no-grab", true);
 }
 
+/// Whatever is lifted while the bridge is stopped, and more is reported than the kernel keeps, is not held after it goes on; the next
+/// touch plays.
+pub(crate) fn overflowed() {
+    for shape in SHAPES {
+        let mut device = Device::plug_in(shape);
+        let (program, mut reader) = start(shape.source, &[]);
+        // The lift comes before the queue is full, then when it is full, then last.
+        for (at, y_share, fz_n) in [(0, 0.45, 1.0), (150, 0.5, 1.1), (299, 0.55, 1.2)] {
+            reader.seen.clear();
+            // What is as it was, the kernel does not say again.
+            device.touch(0.9, y_share, fz_n);
+            pause(150);
+            program.signal(Signal::STOP);
+            pause(20);
+            for k in 0..300 {
+                if k == at {
+                    device.lift();
+                }
+                let (x, axis) = (0.69 + f64::from(k) * 1e-3, if device.is_pen() { PEN[0] } else { MT[0] });
+                let (minimum, maximum, _) = shape.ranges[0];
+                let x = f64::from(minimum) + x * f64::from(maximum - minimum);
+                device.emit(&[(EventType::ABSOLUTE, axis.0, x as i32)]);
+            }
+            program.signal(Signal::CONT);
+            pause(200);
+            reader.read_available();
+            let edges = [("ABS_HAT0X", 1), ("ABS_HAT0X", 0)];
+            assert_eq!(reader.edges(), edges, "{}: {at}: {}", shape.name, program.complaints());
+            pause(500);
+            reader.read_available();
+            assert_eq!(reader.seen.len(), 2, "{}: {at}: {:?}", shape.name, reader.seen);
+        }
+        drop(program);
+        comes_true("the gamepad goes", || find(KeyCode::BTN_SOUTH).is_none());
+    }
+}
+
+/// A lift that another program got ends the contact, and a device that another program took is no pad until it is given back.
+pub(crate) fn taken() {
+    let mut device = Device::plug_in(SHAPES[0]);
+    let (program, mut reader) = start("tablet", &["--no-grab"]);
+    device.touch(0.9, 0.5, 1.0);
+    pause(150);
+    let mut other = RawDevice::open(&device.node).expect("the device");
+    other.grab().expect("it is free");
+    device.lift();
+    pause(300);
+    reader.read_available();
+    assert_eq!(reader.edges(), [("ABS_HAT0X", 1), ("ABS_HAT0X", 0)], "without a grab");
+    other.ungrab().expect("it is given back");
+    device.leave();
+    drop(program);
+    comes_true("the gamepad goes", || find(KeyCode::BTN_SOUTH).is_none());
+    let (mut program, mut reader) = start("tablet", &[]);
+    ask("pause");
+    pause(100);
+    other.grab().expect("it is free while it is paused");
+    ask("resume");
+    comes_true("the pad is denied", || status().contains("denied"));
+    other.ungrab().expect("it is given back");
+    comes_true("the pad is back", || !status().contains("denied"));
+    pause(600);
+    device.touch(0.9, 0.5, 1.0);
+    pause(150);
+    device.lift();
+    pause(150);
+    reader.read_available();
+    assert_eq!(reader.edges(), [("ABS_HAT0X", 1), ("ABS_HAT0X", 0)], "once it is given back");
+    assert!(!program.has_ended());
+}
+
+/// What is down when the bridge comes is let go for the desktop, too; then the device is taken from it.
+pub(crate) fn down_at_the_start() {
+    let mut device = Device::plug_in(SHAPES[0]);
+    let mut desktop = Reader::open(&device.node);
+    device.touch(0.3, 0.4, 0.1);
+    let (_program, mut gamepad) = start("tablet", &[]);
+    device.lift();
+    device.leave();
+    pause(100);
+    desktop.read_available();
+    assert!(desktop.stamp_of("BTN_TOUCH", 0).is_some(), "{:?}", desktop.seen);
+    desktop.seen.clear();
+    device.touch(0.9, 0.5, 1.0);
+    pause(150);
+    // A pause in the middle of a touch.
+    ask("pause");
+    pause(100);
+    ask("resume");
+    pause(100);
+    device.lift();
+    device.leave();
+    pause(100);
+    device.touch(0.1, 0.5, 1.0);
+    pause(150);
+    device.lift();
+    pause(150);
+    desktop.read_available();
+    gamepad.read_available();
+    let names: Vec<_> = desktop.edges().into_iter().filter(|(name, _)| name.starts_with("BTN")).collect();
+    assert!(names.iter().all(|(_, value)| *value == 0), "the desktop gets no press: {names:?}");
+    // The pause lets go, and what still touches presses again.
+    let wanted = [1, 0, 1, 0, -1, 0].map(|value| ("ABS_HAT0X", value));
+    assert_eq!(gamepad.edges(), wanted);
+}
+
 /// A device that leaves lets go within 200 ms, and plays on when it comes back.
 pub(crate) fn replugged() {
     let mut device = Device::plug_in(SHAPES[0]);
@@ -315,6 +433,31 @@ pub(crate) fn replugged() {
         // It is looked for four times a second.
         pause(600);
     }
+}
+
+/// A device that comes back at another node plays on, and a stranger's that has its old node is left alone.
+pub(crate) fn moved() {
+    let device = Device::plug_in(SHAPES[0]);
+    let old_node = device.node.clone();
+    let (mut program, mut reader) = start(&format!("tablet:{}", old_node.display()), &[]);
+    drop(device);
+    pause(200);
+    let mut stranger = Device::plug_in(SHAPES[1]);
+    assert_eq!(stranger.node, old_node);
+    pause(600);
+    let mut device = Device::plug_in(SHAPES[0]);
+    assert_ne!(device.node, old_node);
+    pause(800);
+    stranger.touch(0.1, 0.5, 1.0);
+    pause(150);
+    device.touch(0.9, 0.5, 1.0);
+    pause(150);
+    device.lift();
+    stranger.lift();
+    pause(150);
+    reader.read_available();
+    assert_eq!(reader.edges(), [("ABS_HAT0X", 1), ("ABS_HAT0X", 0)], "{}", program.complaints());
+    assert!(!program.has_ended());
 }
 
 /// A board of four cells that the system reports as axes: it is leaned on in four directions, and stamped on.
@@ -374,6 +517,24 @@ pub(crate) fn board() {
     pause(300);
     reader.read_available();
     assert_eq!(reader.edges(), [("BTN_SOUTH", 1), ("BTN_SOUTH", 0)], "a stamp");
+    // It stalls under a load: the direction is let go, and plays again when it is back.
+    reader.seen.clear();
+    load(50.0, 0.5, 0.0);
+    pause(2_000);
+    reader.read_available();
+    assert_eq!(reader.edges(), [("ABS_HAT0X", 1), ("ABS_HAT0X", 0)], "a stall");
+    let held_ms = (reader.seen[1].at_ns - reader.seen[0].at_ns) / MS;
+    assert!((900..1_200).contains(&held_ms), "held {held_ms} ms");
+    println!("a board that stalls lets go after {held_ms} ms");
+    load(0.0, 0.0, 0.0);
+    pause(600);
+    reader.seen.clear();
+    load(50.0, -0.5, 0.0);
+    pause(200);
+    load(0.0, 0.0, 0.0);
+    pause(200);
+    reader.read_available();
+    assert_eq!(reader.edges(), [("ABS_HAT0X", -1), ("ABS_HAT0X", 0)], "after a stall");
 }
 
 /// What a pen did is recorded as frames, and replays to the same events, the long press of a still pen among them.

@@ -86,7 +86,7 @@ impl OpenedPad {
     ///
     /// # Errors
     /// [`OpenError::Pad`].
-    pub fn input_device(opener: EvdevOpener, patience: Patience) -> Result<Self, OpenError> {
+    pub fn input_device(mut opener: EvdevOpener, patience: Patience) -> Result<Self, OpenError> {
         Self::opened_by(move || opener.open(), patience)
     }
 

@@ -9,6 +9,18 @@ pub enum InputCode {
     Button(u16),
 }
 
+/// Something touches the device.
+pub const BTN_TOUCH: u16 = 0x14a;
+
+/// Which finger the axes that follow are of.
+pub const MT_SLOT: u16 = 0x2f;
+
+/// The first axis that each finger has of its own.
+pub const MT_FIRST: u16 = 0x30;
+
+/// A finger comes, or goes with -1.
+pub const MT_TRACKING_ID: u16 = 0x39;
+
 /// Axes by name.
 pub const AXES: [(&str, u16); 20] = [
     ("ABS_X", 0x00),
@@ -27,7 +39,7 @@ pub const AXES: [(&str, u16); 20] = [
     ("ABS_HAT3Y", 0x17),
     ("ABS_PRESSURE", 0x18),
     ("ABS_DISTANCE", 0x19),
-    ("ABS_MT_SLOT", 0x2f),
+    ("ABS_MT_SLOT", MT_SLOT),
     ("ABS_MT_POSITION_X", 0x35),
     ("ABS_MT_POSITION_Y", 0x36),
     ("ABS_MT_PRESSURE", 0x3a),
@@ -42,7 +54,7 @@ pub const CODES: [(&str, InputCode); 26] = {
         codes[k] = (name, InputCode::Axis(number));
         k += 1;
     }
-    codes[20] = ("BTN_TOUCH", InputCode::Button(0x14a));
+    codes[20] = ("BTN_TOUCH", InputCode::Button(BTN_TOUCH));
     codes[21] = ("BTN_TOOL_PEN", InputCode::Button(0x140));
     codes[22] = ("BTN_TOOL_RUBBER", InputCode::Button(0x141));
     codes[23] = ("BTN_TOOL_FINGER", InputCode::Button(0x145));

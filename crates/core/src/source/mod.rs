@@ -49,6 +49,8 @@ pub struct Evdev {
     pub lacks: Vec<InputCode>,
     /// Whether it is taken from the desktop while it plays, as it would move the pointer.
     pub grabs: bool,
+    /// After so long without any event nothing counts, ms; `None` where silence is rest.
+    pub silent_ms: Option<u32>,
     /// The axes that are the channels; none where it reports contacts.
     pub channels: Vec<u16>,
 }

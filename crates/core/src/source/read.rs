@@ -13,7 +13,7 @@ use crate::toml_text::section::{Bounds, Placed, Section};
 
 const ROOT_KEYS: [&str; 11] =
     ["schema", "name", "title", "lines", "wire", "evdev", "area", "force", "cell", "wrench", "contact"];
-const EVDEV_KEYS: [&str; 5] = ["names", "has", "lacks", "grab", "channels"];
+const EVDEV_KEYS: [&str; 6] = ["names", "has", "lacks", "grab", "silent_ms", "channels"];
 const CONTACT_KEYS: [&str; 6] = ["x", "y", "force", "full_share", "full_n", "touch_n"];
 const LINES_KEYS: [&str; 3] = ["baud", "columns", "decimals"];
 const AREA_KEYS: [&str; 2] = ["half_width_mm", "half_height_mm"];
@@ -46,6 +46,7 @@ const FULL_SHARE: Bounds<f64> = Bounds { low: 0.05, high: 1.0, default: 0.8 };
 const TOUCH_N: Bounds<f64> = Bounds { low: 0.1, high: 5.0, default: 2.5 };
 const PER_COUNT: Bounds<f64> = Bounds { low: -1e6, high: 1e6, default: 1.0 };
 const HEIGHT_MM: Bounds<f64> = Bounds { low: -500.0, high: 500.0, default: 0.0 };
+const SILENT_MS: Bounds<u32> = Bounds { low: 50, high: 60_000, default: 1_000 };
 const BAUD: Bounds<u32> = Bounds { low: 300, high: 4_000_000, default: 115_200 };
 const DECIMALS: Bounds<u32> = Bounds { low: 0, high: 6, default: 2 };
 const SCHEMA: Bounds<u32> = Bounds { low: 1, high: 1, default: 1 };
@@ -259,8 +260,18 @@ fn read_contact(root: &Section<'_>, table: &Section<'_>, findings: &mut Findings
         (None, Some(_)) => return None,
         (force, _) => force.map(|force| force.value),
     };
+    let place = [x?.value, y?.value];
+    let is_of_fingers = |axis: &u16| *axis >= codes::MT_FIRST;
+    let of_fingers = place.iter().chain(&force).filter(|axis| is_of_fingers(axis)).count();
+    if of_fingers != 0 && of_fingers != place.iter().chain(&force).count() {
+        findings.error(
+            table.at,
+            "[contact] mixes axes of fingers, ABS_MT_…, with others",
+            "take all from ABS_MT_…, or none",
+        );
+    }
     Some(Touching {
-        place: [x?.value, y?.value],
+        place,
         force,
         full_share: full_share?.value,
         full_n: full_n?.value,
@@ -287,6 +298,10 @@ fn read_evdev(table: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Fin
     };
     let [has, lacks] = ["has", "lacks"].map(|key| read_codes(table, key, findings));
     let grabs = if table.place_of("grab").is_none() { Some(false) } else { table.flag("grab", findings) };
+    let silent_ms = match table.place_of("silent_ms") {
+        None => Some(None),
+        Some(_) => table.whole("silent_ms", SILENT_MS, findings).map(|silent_ms| Some(silent_ms.value)),
+    };
     let wanted = drafted?.channels();
     let channels = match (wanted, table.place_of("channels")) {
         (0, Some(at)) => {
@@ -312,7 +327,14 @@ fn read_evdev(table: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Fin
             axes.map(|axes| axes.iter().map(|axis| axis.value).collect::<Vec<_>>())
         }
     };
-    let evdev = Evdev { names: names?, has: has?, lacks: lacks?, grabs: grabs?, channels: channels? };
+    let evdev = Evdev {
+        names: names?,
+        has: has?,
+        lacks: lacks?,
+        grabs: grabs?,
+        silent_ms: silent_ms?,
+        channels: channels?,
+    };
     if evdev.names.is_empty() && evdev.has.is_empty() {
         let help =
             "write names = [\"…\"] with a part of its name, or has = [\"ABS_X\", …] with what it reports";
@@ -660,6 +682,29 @@ mod tests {
         };
         assert_eq!((&seated.origin, cells), (&standing.origin, same_cells));
         assert_eq!(Reach { standing_n: Some(2.0), ..*reach }, *same_reach);
+    }
+
+    #[test]
+    fn a_contact_is_of_fingers_or_of_a_tool() {
+        let text = |x: &str, y: &str, force: &str| {
+            format!(
+                "schema = 1\nname = \"pad\"\ntitle = \"A pad\"\n[evdev]\nhas = [\"BTN_TOUCH\"]\n[contact]\nx = \"{x}\"\ny = \"{y}\"\n\
+                 force = \"{force}\"\n"
+            )
+        };
+        let (fingers, tool) = (
+            ["ABS_MT_POSITION_X", "ABS_MT_POSITION_Y", "ABS_MT_PRESSURE"],
+            ["ABS_X", "ABS_Y", "ABS_PRESSURE"],
+        );
+        for mixture in 0..8 {
+            let [x, y, force] = [0, 1, 2].map(|k| if mixture >> k & 1 == 1 { fingers[k] } else { tool[k] });
+            let found = messages(&text(x, y, force));
+            if mixture % 7 == 0 {
+                assert_eq!(found, Vec::<String>::new());
+            } else {
+                assert_eq!(found, ["6: [contact] mixes axes of fingers, ABS_MT_…, with others"]);
+            }
+        }
     }
 
     #[test]

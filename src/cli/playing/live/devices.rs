@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{print_json, printable, stdout};
-use tactpad::bridge::transport::evdev::found::{FoundDevice, fitting};
+use tactpad::bridge::transport::evdev::found::{self, FoundDevice, reading_command};
 use tactpad::bridge::transport::pads::{Attachment, FoundPad, attached, usb_serial_ports};
 use tactpad::source::read::read;
 use tactpad::source::{Origin, Source, shipped};
@@ -39,6 +39,8 @@ pub(super) struct ListedDevice {
     pub(super) name: String,
     /// The description that fits.
     pub(super) source: String,
+    /// Whether this user may read it.
+    pub(super) is_readable: bool,
 }
 
 #[derive(Serialize)]
@@ -70,17 +72,25 @@ pub(super) fn input_devices() -> Vec<ListedDevice> {
     let sources = shipped::names().filter_map(|name| read(shipped::text(name)?).0);
     let (named, others): (Vec<Source>, Vec<Source>) =
         sources.partition(|source| matches!(&source.origin, Origin::Evdev(evdev) if !evdev.names.is_empty()));
+    let mut found = found::attached(&[]);
     let mut devices: Vec<ListedDevice> = Vec::new();
     for source in named.iter().chain(&others) {
-        for FoundDevice { path, name } in fitting(source) {
-            let path = path.display().to_string();
-            if devices.iter().all(|device| device.path != path) {
-                let address = format!("{}:{path}", source.name);
-                devices.push(ListedDevice { address, path, name, source: source.name.clone() });
-            }
-        }
+        devices.extend(
+            found.extract_if(.., |device| device.fits(source)).map(|device| listed_device(&device, source)),
+        );
     }
     devices
+}
+
+fn listed_device(device: &FoundDevice, source: &Source) -> ListedDevice {
+    let path = device.path.display().to_string();
+    ListedDevice {
+        address: format!("{}:{path}", source.name),
+        path,
+        name: device.name.clone(),
+        source: source.name.clone(),
+        is_readable: device.is_readable(),
+    }
 }
 
 fn listed(found: &[FoundPad]) -> Vec<Listed> {
@@ -116,7 +126,12 @@ fn print(report: &DevicesReport) -> io::Result<()> {
     }
     for device in &report.input_devices {
         let (address, name) = (printable(&device.address), printable(&device.name));
-        writeln!(out, "input --pad {address}   ({name})")?;
+        if device.is_readable {
+            writeln!(out, "input --pad {address}   ({name})")?;
+        } else {
+            let command = reading_command(device.path.as_ref());
+            writeln!(out, "input --pad {address}   ({name}; may not be read by you: {command})")?;
+        }
     }
     for port in &report.serial_ports {
         let place = report.usb_ports.iter().find(|usb| usb.path == *port).map(at).unwrap_or_default();

@@ -17,6 +17,7 @@ use crate::cli::printing::written::{print_json, printable, stdout};
 use tactpad::bridge::control::ask;
 use tactpad::bridge::sink::uinput;
 use tactpad::bridge::sink::x11::LeftDown;
+use tactpad::bridge::transport::evdev::found::reading_command;
 use tactpad::bridge::transport::pads::{self, FoundPad};
 
 /// The rules that give the player access; a test holds their number below that of the seat's.
@@ -98,7 +99,7 @@ pub(super) fn examine() -> DoctorReport {
     let root = Path::new("/");
     let mut checks = vec![check_uinput(), check_rules(root)];
     checks.extend(check_pads(&pads::attached()));
-    checks.extend(check_input_devices(&input_devices(), unreadable_input_nodes(root)));
+    checks.extend(check_input_devices(&input_devices()));
     let bridge = match runtime::socket_path(None) {
         Ok(path) => ask(&path, "status"),
         Err(failure) => Err(io::Error::new(io::ErrorKind::PermissionDenied, failure.sentence())),
@@ -114,31 +115,26 @@ pub(super) fn examine() -> DoctorReport {
     DoctorReport { ok: checks.iter().all(|check| check.finding != Finding::Bad), checks }
 }
 
-/// Input devices that can be played with, and whether others may not be read.
-fn check_input_devices(fitting: &[ListedDevice], unreadable: usize) -> Vec<Check> {
-    let found = fitting.iter().map(|device| {
-        Check::good(
-            "input device",
-            printable(&format!("{} plays with --pad {}", device.name, device.address)),
-        )
-    });
-    let hidden = (unreadable > 0).then(|| {
-        Check::note(
-            "input device",
-            format!(
-                "{unreadable} may not be read, a tablet, a touchpad or a board perhaps among them: /proc/bus/input/devices names them, \
-                 and `sudo setfacl -m u:$USER:r /dev/input/eventN` lets you read one until it is unplugged"
-            ),
-        )
-    });
-    found.chain(hidden).collect()
-}
-
-/// How many nodes of input devices this user may not read.
-fn unreadable_input_nodes(root: &Path) -> usize {
-    let nodes = fs::read_dir(root.join("dev/input")).into_iter().flatten().flatten();
-    let events = nodes.filter(|node| node.file_name().to_string_lossy().starts_with("event"));
-    events.filter(|node| access(node.path(), Access::READ_OK).is_err()).count()
+/// Input devices that can be played with, and whether they may be read.
+fn check_input_devices(fitting: &[ListedDevice]) -> Vec<Check> {
+    let check = |device: &ListedDevice| {
+        let name = "input device";
+        if device.is_readable {
+            return Check::good(
+                name,
+                printable(&format!("{} plays with --pad {}", device.name, device.address)),
+            );
+        }
+        let what = printable(&format!("{}, which fits {}", device.name, device.source));
+        Check {
+            mend: Some(reading_command(device.path.as_ref())),
+            ..Check::note(
+                name,
+                format!("{what}, may not be read by you; until it is unplugged this lets you"),
+            )
+        }
+    };
+    fitting.iter().map(check).collect()
 }
 
 fn print(report: &DoctorReport) -> io::Result<()> {
@@ -365,17 +361,21 @@ mod tests {
 
     #[test]
     fn input_devices_that_play_are_named_and_hidden_ones_are_told_of() {
-        let device = ListedDevice {
+        let device = |is_readable: bool| ListedDevice {
             address: "tablet:/dev/input/event5".into(),
             path: "/dev/input/event5".into(),
             name: "Pen".into(),
             source: "tablet".into(),
+            is_readable,
         };
-        let checks = check_input_devices(&[device], 3);
+        let checks = check_input_devices(&[device(true), device(false)]);
         assert_eq!(checks[0].message, "Pen plays with --pad tablet:/dev/input/event5");
-        assert!(checks[1].message.starts_with("3 may not be read") && checks[1].message.contains("setfacl"));
-        assert_eq!(check_input_devices(&[], 0).len(), 0);
-        assert_eq!(unreadable_input_nodes(Path::new("/nowhere")), 0);
+        assert_eq!(
+            checks[1].message,
+            "Pen, which fits tablet, may not be read by you; until it is unplugged this lets you"
+        );
+        assert_eq!(checks[1].mend.as_deref(), Some("sudo setfacl -m u:$USER:r /dev/input/event5"));
+        assert_eq!(check_input_devices(&[]), []);
     }
 
     #[test]

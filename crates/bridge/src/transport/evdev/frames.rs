@@ -2,7 +2,8 @@
 //!
 //! A device says nothing while nothing changes, so its last state is sent again and again: its silence is no lost link.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 use firmware_proto::ENCODED_MAX;
 use firmware_proto::channels::ChannelSample;
@@ -12,7 +13,8 @@ use firmware_proto::link::encode_message;
 use firmware_proto::sample::Status;
 use tactpad_core::pipeline::contact::balance::PLATE_RADIUS_MM;
 use tactpad_core::quantity::WEIGHT_N_PER_G;
-use tactpad_core::source::{FULL_N, Measures, Source, Touching};
+use tactpad_core::source::codes::{BTN_TOUCH, MT_FIRST, MT_SLOT, MT_TRACKING_ID};
+use tactpad_core::source::{Evdev, FULL_N, Measures, Source, Touching};
 
 /// The last state is sent again after so long, µs.
 pub(super) const REPEAT_US: u64 = 5_000;
@@ -23,12 +25,8 @@ const FRAME_MIN_US: u64 = 100;
 /// Fingers of a touchpad that are followed.
 const SLOTS: usize = 16;
 
-const BTN_TOOL_PEN: u16 = 0x140;
-const BTN_TOOL_RUBBER: u16 = 0x141;
-const BTN_TOUCH: u16 = 0x14a;
-const MT_SLOT: u16 = 0x2f;
-const MT_TRACKING_ID: u16 = 0x39;
-const MT_FIRST: u16 = 0x30;
+/// Pen, eraser, brush, pencil and airbrush.
+const TOOLS: RangeInclusive<u16> = 0x140..=0x144;
 
 /// The range of an axis, by the kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,6 +47,8 @@ pub(super) enum Change {
     Button(u16, bool),
     /// All that came before is one state.
     End,
+    /// Events were lost: what follows, up to the whole state, says nothing.
+    Lost,
 }
 
 /// One finger of a touchpad.
@@ -68,11 +68,16 @@ pub(super) struct EvdevFrames {
     slot: usize,
     /// The finger that plays.
     playing: Option<usize>,
-    /// Whether the tool is in range, for devices that say so.
-    is_near: Option<bool>,
-    is_down: bool,
-    /// Whether something touched the device when it was opened: that is no contact before it lifts.
+    /// Buttons that are down.
+    down: BTreeSet<u16>,
+    /// Whether the device says which tool is in range.
+    has_tools: bool,
+    /// Whether something has touched the device since its state was taken anew: that is no contact before it lifts.
     is_stale: bool,
+    /// After so long without an event nothing is sent, µs.
+    silent_us: Option<u64>,
+    /// When the device was heard last.
+    heard_us: u64,
     sequence: u32,
     sent_us: u64,
 }
@@ -85,40 +90,59 @@ enum Kind {
 }
 
 impl EvdevFrames {
-    /// Of a described device with these axes.
-    pub(super) fn new(source: &Source, channels: &[u16], ranges: BTreeMap<u16, AxisRange>) -> Self {
+    /// Of a described device, before its state is known.
+    pub(super) fn new(source: &Source, wanted: &Evdev) -> Self {
         let kind = match source.measures {
             Measures::Contact(touching) => {
                 let has_slots = touching.place.iter().all(|axis| *axis >= MT_FIRST);
                 Kind::Contact { touching, has_slots }
             }
-            Measures::Cells(..) | Measures::Wrench(..) => Kind::Channels(channels.to_vec()),
+            Measures::Cells(..) | Measures::Wrench(..) => Kind::Channels(wanted.channels.clone()),
         };
-        let axes: BTreeMap<u16, i32> = ranges.iter().map(|(axis, range)| (*axis, range.value)).collect();
-        // The kernel does not say again which slot it was at.
-        let slot = usize::try_from(value(&axes, MT_SLOT)).unwrap_or(SLOTS);
         Self {
             kind,
-            ranges,
-            axes,
+            ranges: BTreeMap::new(),
+            axes: BTreeMap::new(),
             slots: vec![Slot::default(); SLOTS],
-            slot,
+            slot: 0,
             playing: None,
-            is_near: None,
-            is_down: false,
+            down: BTreeSet::new(),
+            has_tools: false,
             is_stale: false,
+            silent_us: wanted.silent_ms.map(|ms| u64::from(ms) * 1_000),
+            heard_us: 0,
             sequence: 0,
             sent_us: 0,
         }
     }
 
-    /// Something lay on the device when it was opened: it is no contact before it lifts.
-    pub(super) const fn touched_at_opening(&mut self) {
-        self.is_stale = true;
+    /// Takes the device's state anew: the buttons that are down, and the axes. What each finger did is not told, so whatever touches is
+    /// no contact before it lifts.
+    pub(super) fn set_state(&mut self, down: BTreeSet<u16>, ranges: BTreeMap<u16, AxisRange>) {
+        self.axes = ranges.iter().map(|(axis, range)| (*axis, range.value)).collect();
+        self.ranges = ranges;
+        self.slots.fill(Slot::default());
+        // The kernel does not say again which slot it is at.
+        self.slot = usize::try_from(value(&self.axes, MT_SLOT)).unwrap_or(SLOTS);
+        self.playing = None;
+        self.has_tools |= down.range(TOOLS).next().is_some();
+        self.is_stale = down.contains(&BTN_TOUCH);
+        self.down = down;
+    }
+
+    /// The buttons that are down.
+    pub(super) const fn down(&self) -> &BTreeSet<u16> {
+        &self.down
+    }
+
+    /// Whether a button is down, or a tool in range.
+    pub(super) fn is_anything_down(&self) -> bool {
+        !self.down.is_empty()
     }
 
     /// Takes what the device reported by `now_us`, and appends a frame for each whole state to `out`.
     pub(super) fn take(&mut self, now_us: u64, change: Change, out: &mut Vec<u8>) {
+        self.heard_us = now_us;
         match change {
             Change::Axis(MT_SLOT, value) => self.slot = usize::try_from(value).unwrap_or(SLOTS),
             Change::Axis(MT_TRACKING_ID, value) => self.track(value >= 0),
@@ -130,34 +154,54 @@ impl EvdevFrames {
             Change::Axis(axis, value) => {
                 self.axes.insert(axis, value);
             }
-            Change::Button(BTN_TOUCH, is_down) => {
-                self.is_down = is_down;
-                self.is_stale &= is_down;
-                if !is_down {
-                    // Events that were lost may have been those of fingers.
-                    self.slots.iter_mut().for_each(|slot| slot.is_down = false);
-                    self.playing = None;
-                }
-            }
-            Change::Button(BTN_TOOL_PEN | BTN_TOOL_RUBBER, is_near) => {
-                self.is_near = Some(is_near);
-                self.is_stale &= is_near;
-            }
-            Change::Button(..) => {}
+            Change::Button(button, is_down) => self.press(button, is_down),
             Change::End => self.send(now_us, out),
+            Change::Lost => {}
         }
     }
 
-    /// When [`Self::repeat`] is to be called if nothing comes before.
-    pub(super) const fn due_us(&self) -> u64 {
-        self.sent_us + REPEAT_US
+    /// When [`Self::repeat`] is to be called if nothing comes before; `None` while the device's silence is no rest.
+    pub(super) fn due_us(&self) -> Option<u64> {
+        let due_us = self.sent_us + REPEAT_US;
+        let is_silent = self.silent_us.is_some_and(|silent_us| due_us >= self.heard_us + silent_us);
+        (!is_silent || self.is_at_rest()).then_some(due_us)
+    }
+
+    /// Whether all channels are 0: then nothing lies on the device, and nothing changes.
+    fn is_at_rest(&self) -> bool {
+        let Kind::Channels(channels) = &self.kind else { return false };
+        channels.iter().all(|axis| value(&self.axes, *axis) == 0)
     }
 
     /// Appends the state to `out` once more, if that is due at `now_us`.
     pub(super) fn repeat(&mut self, now_us: u64, out: &mut Vec<u8>) {
-        if self.due_us() <= now_us {
+        if self.due_us().is_some_and(|due_us| due_us <= now_us) {
             self.send(now_us, out);
         }
+    }
+
+    /// A button goes down or up.
+    fn press(&mut self, button: u16, is_down: bool) {
+        if is_down {
+            self.down.insert(button);
+        } else {
+            self.down.remove(&button);
+        }
+        if button == BTN_TOUCH && !is_down {
+            self.is_stale = false;
+            // Fingers of before the state was taken have no slots here.
+            self.slots.iter_mut().for_each(|slot| slot.is_down = false);
+            self.playing = None;
+        }
+        if TOOLS.contains(&button) {
+            self.has_tools = true;
+            self.is_stale &= self.is_near();
+        }
+    }
+
+    /// Whether a tool is in range, as far as the device says so.
+    fn is_near(&self) -> bool {
+        !self.has_tools || self.down.range(TOOLS).next().is_some()
     }
 
     /// A finger comes or goes. The one that comes to an untouched pad plays; others do nothing, also when it has gone.
@@ -167,7 +211,7 @@ impl EvdevFrames {
             slot.is_down = is_down;
         }
         if is_first {
-            (self.playing, self.is_stale) = (Some(self.slot), false);
+            self.playing = Some(self.slot);
         } else if !is_down && self.playing == Some(self.slot) {
             self.playing = None;
         }
@@ -211,7 +255,7 @@ impl EvdevFrames {
 
     /// The contact of a pen: none while it hovers or is out of range.
     fn tool(&self, touching: &Touching) -> Option<[i32; 3]> {
-        let is_down = self.is_down && self.is_near != Some(false);
+        let is_down = self.down.contains(&BTN_TOUCH) && self.is_near();
         let place = touching.place.map(|axis| value(&self.axes, axis));
         let force = touching.force.map(|axis| value(&self.axes, axis));
         is_down.then(|| self.contact(touching, place, force))
@@ -266,7 +310,7 @@ fn value(axes: &BTreeMap<u16, i32>, axis: u16) -> i32 {
 #[cfg(test)]
 mod tests {
     use firmware_proto::link::MessageReceiver;
-    use tactpad_core::source::{read, shipped};
+    use tactpad_core::source::{Origin, read, shipped};
 
     use super::Change::{Axis, Button, End};
     use super::*;
@@ -282,9 +326,11 @@ mod tests {
     }
 
     impl Device {
-        fn of(name: &str, channels: &[u16], ranges: &[(u16, AxisRange)]) -> Self {
+        fn of(name: &str, ranges: &[(u16, AxisRange)]) -> Self {
             let source = read::read(shipped::text(name).unwrap()).0.unwrap();
-            let frames = EvdevFrames::new(&source, channels, ranges.iter().copied().collect());
+            let Origin::Evdev(wanted) = &source.origin else { panic!("{source:?}") };
+            let mut frames = EvdevFrames::new(&source, wanted);
+            frames.set_state(BTreeSet::new(), ranges.iter().copied().collect());
             Self { frames, now_us: 0 }
         }
 
@@ -308,6 +354,8 @@ mod tests {
         }
     }
 
+    const BTN_TOOL_PEN: u16 = 0x140;
+    const BTN_TOOL_RUBBER: u16 = 0x141;
     const X: u16 = 0x00;
     const Y: u16 = 0x01;
     const PRESSURE: u16 = 0x18;
@@ -318,7 +366,6 @@ mod tests {
     fn tablet() -> Device {
         Device::of(
             "tablet",
-            &[],
             &[(X, range(0, 40_000, 157)), (Y, range(0, 25_000, 157)), (PRESSURE, range(0, 8_191, 0))],
         )
     }
@@ -343,28 +390,52 @@ mod tests {
     }
 
     #[test]
-    fn the_eraser_presses_like_the_tip() {
+    fn each_tool_presses_like_the_tip_also_after_another() {
         let mut pen = tablet();
-        let eraser =
-            [Button(BTN_TOOL_RUBBER, true), Button(BTN_TOUCH, true), Axis(X, 20_000), Axis(Y, 12_500), End];
-        assert_eq!(pen.contact(&eraser).map(|(place_um, _)| place_um), Some([0, 0]));
+        for tool in TOOLS.chain([BTN_TOOL_PEN]) {
+            let touched =
+                [Button(tool, true), Button(BTN_TOUCH, true), Axis(X, 20_000), Axis(Y, 12_500), End];
+            assert_eq!(pen.contact(&touched).map(|(place_um, _)| place_um), Some([0, 0]), "{tool:x}");
+            assert_eq!(pen.contact(&[Button(BTN_TOUCH, false), Button(tool, false), End]), None, "{tool:x}");
+        }
+        // The pen leaves while the eraser is there.
+        let both = [Button(BTN_TOOL_PEN, true), Button(BTN_TOOL_RUBBER, true), Button(BTN_TOUCH, true), End];
+        assert!(pen.contact(&both).is_some());
+        assert!(pen.contact(&[Button(BTN_TOOL_PEN, false), End]).is_some());
     }
 
     #[test]
-    fn what_lay_there_at_the_opening_is_no_contact_before_it_lifts() {
+    fn what_touches_when_the_state_is_taken_is_no_contact_before_it_lifts() {
         let mut pen = tablet();
-        pen.frames.touched_at_opening();
-        pen.frames.is_down = true;
+        let ranges = pen.frames.ranges.clone();
+        let hover = [Button(BTN_TOOL_PEN, true), End];
+        assert_eq!(pen.contact(&hover), None);
+        assert!(pen.contact(&[Button(BTN_TOUCH, true), End]).is_some());
+        pen.frames.set_state([BTN_TOOL_PEN, BTN_TOUCH].into(), ranges.clone());
         assert_eq!(pen.contact(&[Axis(X, 20_000), End]), None);
         assert_eq!(pen.contact(&[Button(BTN_TOUCH, false), End]), None);
         assert!(pen.contact(&[Button(BTN_TOUCH, true), End]).is_some());
+        pen.frames.set_state(BTreeSet::new(), ranges);
+        assert_eq!(pen.contact(&[]), None, "it lifted, and that was lost");
+    }
+
+    #[test]
+    fn a_second_finger_does_nothing_while_an_unknown_one_touches() {
+        let mut pad = touchpad(0);
+        let ranges = pad.frames.ranges.clone();
+        assert!(pad.contact(&[&[Button(BTN_TOUCH, true)], &finger(0, 1, 500)[..]].concat()).is_some());
+        pad.frames.set_state([BTN_TOUCH].into(), ranges);
+        assert_eq!(pad.contact(&finger(1, 2, 300)), None);
+        assert_eq!(pad.contact(&[Axis(MT_SLOT, 0), Axis(MT_TRACKING_ID, -1), End]), None);
+        let lifted = [Axis(MT_SLOT, 1), Axis(MT_TRACKING_ID, -1), Button(BTN_TOUCH, false), End];
+        assert_eq!(pad.contact(&lifted), None);
+        assert!(pad.contact(&finger(1, 3, 300)).is_some());
     }
 
     fn touchpad(resolution: i32) -> Device {
         let pressure = range(0, 255, resolution);
         Device::of(
             "touchpad",
-            &[],
             &[(MT_X, range(0, 1_000, 10)), (MT_Y, range(0, 600, 10)), (MT_PRESSURE, pressure)],
         )
     }
@@ -400,7 +471,7 @@ mod tests {
     fn the_slot_at_the_opening_is_the_kernels() {
         let at_two = AxisRange { value: 2, ..range(0, 4, 0) };
         let ranges = [(MT_SLOT, at_two), (MT_X, range(0, 1_000, 10)), (MT_Y, range(0, 600, 10))];
-        let mut pad = Device::of("touchpad", &[], &ranges);
+        let mut pad = Device::of("touchpad", &ranges);
         let touched = [Axis(MT_TRACKING_ID, 1), Axis(MT_X, 750), Axis(MT_Y, 300), End];
         assert!(pad.contact(&touched).is_some());
         assert!(
@@ -427,10 +498,32 @@ mod tests {
     }
 
     #[test]
+    fn a_board_that_stalls_under_a_load_repeats_nothing() {
+        let ranges: Vec<_> = [0x12, 0x10, 0x13, 0x11].map(|axis| (axis, range(0, 65_535, 0))).into();
+        let mut board = Device::of("balance-board", &ranges);
+        let frames = &mut board.frames;
+        let mut out = Vec::new();
+        let mut repeats = |frames: &mut EvdevFrames, from_us: u64| {
+            let mut now_us = from_us;
+            while let Some(due_us) = frames.due_us().filter(|due_us| *due_us < from_us + 5_000_000) {
+                now_us = due_us;
+                frames.repeat(now_us, &mut out);
+            }
+            now_us - from_us
+        };
+        assert!(repeats(frames, 0) > 4_900_000, "nobody is on it");
+        frames.take(5_000_000, Axis(0x12, 100), &mut Vec::new());
+        frames.take(5_000_000, End, &mut Vec::new());
+        assert_eq!(repeats(frames, 5_000_000), 995_000);
+        frames.take(9_000_000, End, &mut Vec::new());
+        assert_eq!(repeats(frames, 9_000_000), 995_000, "it is heard again");
+    }
+
+    #[test]
     fn a_board_sends_its_cells_as_channels() {
         let axes = [0x12, 0x10, 0x13, 0x11];
         let ranges: Vec<_> = axes.iter().map(|axis| (*axis, range(0, 65_535, 0))).collect();
-        let mut board = Device::of("balance-board", &axes, &ranges);
+        let mut board = Device::of("balance-board", &ranges);
         let changes: Vec<_> =
             [(0x12, 100), (0x10, 200), (0x13, 300), (0x11, 400)].map(|(a, v)| Axis(a, v)).into();
         let Message::Channels(sample) = board.after(&[&changes[..], &[End]].concat()) else { panic!() };

@@ -3,15 +3,16 @@
 pub mod found;
 mod frames;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::path::{Path, PathBuf};
 
 use ::evdev::raw_stream::RawDevice;
-use ::evdev::{AbsInfo, AbsoluteAxisCode, Device, EventType, InputEvent, KeyCode, SynchronizationCode};
+use ::evdev::{AbsInfo, AbsoluteAxisCode, EventType, InputEvent, SynchronizationCode};
 use firmware_proto::command::Command;
 use rustix::event::epoll;
+use rustix::fs::{Mode, OFlags};
 use rustix::time::{
     Itimerspec, TimerfdClockId, TimerfdFlags, TimerfdTimerFlags, timerfd_create, timerfd_settime,
 };
@@ -20,16 +21,31 @@ use tactpad_core::source::{Evdev, Origin, Source};
 use super::Transport;
 use super::opener::PadError;
 use super::pacing::{is_readable, limit, monotonic_us};
-use found::{FoundDevice, fits, fitting};
+use found::{FoundDevice, attached, reading_command};
 use frames::{AxisRange, Change, EvdevFrames};
+
+/// Reads at once after events were lost: more than the kernel's queue of a device holds.
+const DRAIN_READS_MAX: usize = 64;
+
+/// While something is down and nothing is reported, the kernel is asked for the true state so often, µs: another program may have taken
+/// the device, and the lift with it.
+const CHECK_US: u64 = 100_000;
+
+/// A timer of 0 never fires.
+const NEVER: u64 = 0;
 
 /// An open input device.
 pub struct EvdevPort {
-    device: Device,
+    device: RawDevice,
     frames: EvdevFrames,
-    /// The same open device, by which it is taken from the desktop while it plays, and given back. The other one would complain on
-    /// standard error that a device which has left is not given back.
-    grip: Option<RawDevice>,
+    /// Whether it is taken from the desktop while it plays.
+    grabs: bool,
+    /// Whether events were lost and the state was not taken anew since.
+    is_lost: bool,
+    /// Whether it is to be taken from the desktop as soon as nothing on it is down: who takes it gets the releases.
+    wants_grab: bool,
+    /// When the true state was asked last.
+    checked_us: u64,
     /// When it was opened, by the monotonic clock: frames count from there.
     origin_us: u64,
     /// Frames that were not read yet.
@@ -40,37 +56,44 @@ pub struct EvdevPort {
     timer: OwnedFd,
 }
 
-/// Opens a described device again and again.
-#[derive(Clone, Debug)]
+/// Opens a described device again and again, and remembers which one it was.
+#[derive(Debug)]
 pub struct EvdevOpener {
     source: Source,
     path: Option<PathBuf>,
     grabs: bool,
+    /// The device that was opened last.
+    last: Option<FoundDevice>,
 }
 
 impl EvdevOpener {
     /// An opener for the device at `path`, or the only one that fits. With `keeps_pointer` it goes on moving the pointer.
     pub fn new(source: Source, path: Option<PathBuf>, keeps_pointer: bool) -> Self {
         let grabs = matches!(&source.origin, Origin::Evdev(evdev) if evdev.grabs) && !keeps_pointer;
-        Self { source, path, grabs }
+        Self { source, path, grabs, last: None }
     }
 
     /// Opens the device if it is there.
     ///
     /// # Errors
     /// See [`PadError`]; the text is one sentence with the way out.
-    pub fn open(&self) -> Result<Box<dyn Transport>, PadError> {
+    pub fn open(&mut self) -> Result<Box<dyn Transport>, PadError> {
         let Origin::Evdev(wanted) = &self.source.origin else {
             return Err(PadError::Unusable(format!("{} is no input device", self.source.name)));
         };
-        let path = self.path.clone().map_or_else(|| self.only_one(), Ok)?;
-        let device = Device::open(&path).map_err(|error| open_error(&path, &error))?;
-        if !fits(wanted, &device) {
-            return Err(PadError::Unusable(self.is_another(&path, &device)));
+        let path = self.node(wanted)?;
+        let device = open_device(&path).map_err(|error| open_error(&path, &error))?;
+        let found = FoundDevice::opened(&path, &device);
+        if !found.fits(&self.source) {
+            return Err(PadError::Unusable(self.is_another(&found)));
         }
         let port = EvdevPort::new(device, &self.source, wanted, self.grabs);
         match port {
-            Ok(port) => Ok(Box::new(port)),
+            Ok(port) => {
+                // A link that is named, as those in /dev/input/by-id, says by itself which device is meant.
+                self.last = (!path.is_symlink()).then_some(found);
+                Ok(Box::new(port))
+            }
             Err(error) if error.raw_os_error() == Some(rustix::io::Errno::BUSY.raw_os_error()) => {
                 Err(PadError::Denied(format!(
                     "{} is taken by another program: end that, or play beside it with --no-grab",
@@ -81,14 +104,35 @@ impl EvdevOpener {
         }
     }
 
-    fn only_one(&self) -> Result<PathBuf, PadError> {
+    /// The node to open. The kernel numbers devices as they come, so one that was open is known by what it tells.
+    fn node(&self, wanted: &Evdev) -> Result<PathBuf, PadError> {
+        if let (Some(path), None) = (&self.path, &self.last) {
+            return Ok(path.clone());
+        }
+        let mut fitting = attached(&wanted.names);
+        fitting.retain(|found| found.fits(&self.source));
+        self.choose(&fitting)
+    }
+
+    /// The node of the device that is meant among those that fit.
+    fn choose(&self, fitting: &[FoundDevice]) -> Result<PathBuf, PadError> {
+        if let Some(last) = &self.last {
+            let same = fitting.iter().filter(|found| found.is_same(last));
+            if let Some(found) = same.max_by_key(|found| found.path == last.path) {
+                return Ok(found.path.clone());
+            }
+        }
         let name = &self.source.name;
-        match &fitting(&self.source)[..] {
-            [found] => Ok(found.path.clone()),
-            [] => Err(PadError::NotThere(format!(
-                "no device is attached that fits {name}, or it may not be read: plug it in, and see `tactpad devices`"
+        match (&self.path, fitting) {
+            (Some(path), _) => Err(PadError::NotThere(format!(
+                "the device that was {name}:{} is gone: plug it in",
+                path.display()
             ))),
-            several => {
+            (None, [found]) => Ok(found.path.clone()),
+            (None, []) => Err(PadError::NotThere(format!(
+                "no device is attached that fits {name}: plug it in, and see `tactpad devices`"
+            ))),
+            (None, several) => {
                 let told = |found: &FoundDevice| format!("{name}:{} ({})", found.path.display(), found.name);
                 let list = several.iter().map(told).collect::<Vec<_>>().join(", ");
                 Err(PadError::Unusable(format!("several devices fit, choose one with --pad: {list}")))
@@ -96,21 +140,26 @@ impl EvdevOpener {
         }
     }
 
-    fn is_another(&self, path: &Path, device: &Device) -> String {
-        let (name, path) = (&self.source.name, path.display());
-        let is = device.name().unwrap_or("without a name");
+    fn is_another(&self, found: &FoundDevice) -> String {
+        let (name, path, is) = (&self.source.name, found.path.display(), &found.name);
         format!(
             "{path} ({is}) is no {name}: `tactpad devices` lists what fits, `tactpad source show {name}` says what it must report"
         )
     }
 }
 
+/// Opens a node without waiting for anything.
+fn open_device(path: &Path) -> io::Result<RawDevice> {
+    let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    RawDevice::from_fd(rustix::fs::open(path, flags, Mode::empty())?)
+}
+
 fn open_error(path: &Path, error: &io::Error) -> PadError {
-    let path = path.display();
+    let (path, command) = (path.display(), reading_command(path));
     match error.kind() {
         io::ErrorKind::NotFound => PadError::NotThere(format!("{path} is gone: plug the device in")),
         io::ErrorKind::PermissionDenied => PadError::Denied(format!(
-            "no permission to read {path}: `sudo setfacl -m u:$USER:r {path}` gives it until the device is unplugged"
+            "no permission to read {path}: `{command}` gives it until the device is unplugged"
         )),
         _ if error.raw_os_error() == Some(rustix::io::Errno::NODEV.raw_os_error()) => {
             PadError::NotThere(format!("{path} is gone: plug the device in"))
@@ -122,46 +171,28 @@ fn open_error(path: &Path, error: &io::Error) -> PadError {
 }
 
 impl EvdevPort {
-    fn new(device: Device, source: &Source, wanted: &Evdev, grabs: bool) -> io::Result<Self> {
-        device.set_nonblocking(true)?;
-        let grip = if grabs { Some(RawDevice::from_fd(device.as_fd().try_clone_to_owned()?)?) } else { None };
-        let mut port = Self::ungrabbed(device, source, wanted, grip)?;
-        port.grip.as_mut().map_or(Ok(()), RawDevice::grab)?;
-        Ok(port)
-    }
-
-    fn ungrabbed(
-        device: Device,
-        source: &Source,
-        wanted: &Evdev,
-        grip: Option<RawDevice>,
-    ) -> io::Result<Self> {
-        let range = |(axis, info): (AbsoluteAxisCode, AbsInfo)| {
-            let (value, minimum) = (info.value(), info.minimum());
-            let range = AxisRange { value, minimum, maximum: info.maximum(), resolution: info.resolution() };
-            (axis.0, range)
-        };
-        let ranges: BTreeMap<u16, AxisRange> = device.get_absinfo()?.map(range).collect();
-        let mut frames = EvdevFrames::new(source, &wanted.channels, ranges);
-        if device.get_key_state()?.contains(KeyCode::BTN_TOUCH) {
-            frames.touched_at_opening();
-        }
+    fn new(device: RawDevice, source: &Source, wanted: &Evdev, grabs: bool) -> io::Result<Self> {
         let either = epoll::create(epoll::CreateFlags::CLOEXEC)?;
         let timer =
             timerfd_create(TimerfdClockId::Monotonic, TimerfdFlags::CLOEXEC | TimerfdFlags::NONBLOCK)?;
         for fd in [device.as_fd(), timer.as_fd()] {
             epoll::add(&either, fd, epoll::EventData::new_u64(0), epoll::EventFlags::IN)?;
         }
-        let port = Self {
+        let mut port = Self {
             device,
-            frames,
-            grip,
+            frames: EvdevFrames::new(source, wanted),
+            grabs,
+            is_lost: true,
+            wants_grab: grabs,
+            checked_us: 0,
             origin_us: monotonic_us(),
             out: Vec::new(),
             is_gone: false,
             either,
             timer,
         };
+        port.synchronize()?;
+        port.grab_if_untouched()?;
         port.set_timer()?;
         Ok(port)
     }
@@ -169,33 +200,112 @@ impl EvdevPort {
     /// Takes what the device has reported by `now_us`.
     fn take(&mut self, now_us: u64) -> io::Result<()> {
         // What is not handed over yet comes first: a device that floods must not fill the memory.
-        if self.is_gone || !self.out.is_empty() || !is_readable(self.device.as_fd())? {
+        if self.is_gone || !self.out.is_empty() {
             return Ok(());
         }
-        let changes = self.device.fetch_events().map(|events| events.filter_map(change).collect::<Vec<_>>());
-        match changes {
-            Ok(changes) => {
-                for change in changes {
-                    self.frames.take(now_us, change, &mut self.out);
+        if self.hear(now_us).is_err() {
+            self.leave()?;
+        }
+        Ok(())
+    }
+
+    /// The device is gone, or another program has it.
+    fn leave(&mut self) -> io::Result<()> {
+        if !self.is_gone {
+            self.is_gone = true;
+            // One that is gone is readable for ever.
+            epoll::delete(&self.either, self.device.as_fd())?;
+        }
+        self.set_timer()
+    }
+
+    fn hear(&mut self, now_us: u64) -> io::Result<()> {
+        if !self.is_lost && is_readable(self.device.as_fd())? {
+            for event in available(&mut self.device)? {
+                match change(event) {
+                    Some(Change::Lost) => {
+                        self.is_lost = true;
+                        break;
+                    }
+                    Some(change) => self.frames.take(now_us, change, &mut self.out),
+                    None => {}
                 }
             }
-            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) => {}
-            Err(_) => {
-                // A device that is gone is readable for ever.
-                epoll::delete(&self.either, self.device.as_fd())?;
-                self.is_gone = true;
+        } else if self.frames.is_anything_down() && self.checked_us + CHECK_US <= now_us {
+            self.checked_us = now_us;
+            self.is_lost |= self.down()? != *self.frames.down();
+        }
+        if self.is_lost {
+            self.synchronize()?;
+            if !self.is_lost {
+                self.frames.take(now_us, Change::End, &mut self.out);
+            }
+        }
+        self.grab_if_untouched()
+    }
+
+    /// Takes the device from the desktop, if that is wanted and nothing on it is down.
+    fn grab_if_untouched(&mut self) -> io::Result<()> {
+        let is_due = self.wants_grab && !self.device.is_grabbed();
+        if !is_due || self.is_lost || self.frames.is_anything_down() || is_readable(self.device.as_fd())? {
+            return Ok(());
+        }
+        // The kernel may know better than what was read.
+        self.is_lost = !self.down()?.is_empty();
+        if self.is_lost { Ok(()) } else { self.device.grab() }
+    }
+
+    /// Throws away what was reported, and takes the state as it is. While a device floods it stays lost, and nothing is sent.
+    fn synchronize(&mut self) -> io::Result<()> {
+        for _ in 0..DRAIN_READS_MAX {
+            if is_readable(self.device.as_fd())? {
+                available(&mut self.device)?;
+                continue;
+            }
+            let (down, ranges) = (self.down()?, self.ranges()?);
+            // Reports that came meanwhile may be older than what was asked.
+            if !is_readable(self.device.as_fd())? {
+                self.frames.set_state(down, ranges);
+                self.is_lost = false;
+                break;
             }
         }
         Ok(())
     }
 
-    /// Lets the descriptor poll readable when the state is to be sent again, or at once if frames or the end are to be told.
+    /// The buttons that are down, by the kernel. Asking throws away those reports of buttons that were not read yet.
+    fn down(&self) -> io::Result<BTreeSet<u16>> {
+        Ok(self.device.get_key_state()?.iter().map(|button| button.0).collect())
+    }
+
+    fn ranges(&self) -> io::Result<BTreeMap<u16, AxisRange>> {
+        let range = |(axis, info): (AbsoluteAxisCode, AbsInfo)| {
+            let (value, minimum) = (info.value(), info.minimum());
+            let range = AxisRange { value, minimum, maximum: info.maximum(), resolution: info.resolution() };
+            (axis.0, range)
+        };
+        Ok(self.device.get_absinfo()?.map(range).collect())
+    }
+
+    /// Lets the descriptor poll readable when the state is to be sent again, or at once if more is to be done.
     fn set_timer(&self) -> io::Result<()> {
-        let is_more = !self.out.is_empty() || self.is_gone;
-        let due_us = if is_more { 1 } else { self.origin_us + self.frames.due_us() };
+        let is_more = !self.out.is_empty() || self.is_gone || self.is_lost;
+        let due_us = self.frames.due_us().map_or(NEVER, |due_us| self.origin_us + due_us);
+        let due_us = if is_more { 1 } else { due_us };
         let timer = Itimerspec { it_interval: limit(0), it_value: limit(due_us) };
         timerfd_settime(&self.timer, TimerfdTimerFlags::ABSTIME, &timer)?;
         Ok(())
+    }
+}
+
+/// The events that can be read at once; none where another reader was faster.
+fn available(device: &mut RawDevice) -> io::Result<Vec<InputEvent>> {
+    match device.fetch_events() {
+        Ok(events) => Ok(events.collect()),
+        Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) => {
+            Ok(Vec::new())
+        }
+        Err(error) => Err(error),
     }
 }
 
@@ -203,9 +313,11 @@ fn change(event: InputEvent) -> Option<Change> {
     match event.event_type() {
         EventType::ABSOLUTE => Some(Change::Axis(event.code(), event.value())),
         EventType::KEY => Some(Change::Button(event.code(), event.value() != 0)),
-        EventType::SYNCHRONIZATION => {
-            (event.code() == SynchronizationCode::SYN_REPORT.0).then_some(Change::End)
-        }
+        EventType::SYNCHRONIZATION => match SynchronizationCode(event.code()) {
+            SynchronizationCode::SYN_REPORT => Some(Change::End),
+            SynchronizationCode::SYN_DROPPED => Some(Change::Lost),
+            _ => None,
+        },
         _ => None,
     }
 }
@@ -218,14 +330,17 @@ impl Transport for EvdevPort {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         let now_us = monotonic_us().saturating_sub(self.origin_us);
         self.take(now_us)?;
-        if !self.is_gone {
+        if !self.is_gone && !self.is_lost {
             self.frames.repeat(now_us, &mut self.out);
         }
         let count = self.out.len().min(bytes.len());
         bytes.iter_mut().zip(self.out.drain(..count)).for_each(|(to, from)| *to = from);
         self.set_timer()?;
         match (count, self.is_gone) {
-            (0, true) => Err(io::Error::new(io::ErrorKind::BrokenPipe, "the device was unplugged")),
+            (0, true) => Err(io::Error::new(
+                io::ErrorKind::BrokenPipe,
+                "the device was unplugged, or another program took it",
+            )),
             (0, false) => Err(io::ErrorKind::WouldBlock.into()),
             (count, _) => Ok(count),
         }
@@ -237,9 +352,40 @@ impl Transport for EvdevPort {
     }
 
     fn pause(&mut self, is_paused: bool) {
-        // One that left meanwhile is noticed by who reads next.
-        if let Some(grip) = &mut self.grip {
-            let _ = if is_paused { grip.ungrab() } else { grip.grab() };
+        self.wants_grab = self.grabs && !is_paused;
+        let done = if is_paused { self.device.ungrab() } else { self.grab_if_untouched() };
+        if done.is_err() {
+            // Who reads next is told.
+            drop(self.leave());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tactpad_core::source::{read, shipped};
+
+    use super::*;
+
+    fn at(node: &str, name: &str) -> FoundDevice {
+        let mut found = FoundDevice::default();
+        (found.path, found.name) = (node.into(), name.into());
+        found
+    }
+
+    #[test]
+    fn a_device_is_found_again_at_another_node_and_a_strangers_is_left_alone() {
+        let source = read::read(shipped::text("tablet").unwrap()).0.unwrap();
+        let (old, moved, other) = (at("event5", "Mine"), at("event7", "Mine"), at("event5", "Other"));
+        let mut opener = EvdevOpener::new(source, None, false);
+        assert_eq!(opener.choose(std::slice::from_ref(&old)), Ok("event5".into()));
+        assert!(matches!(opener.choose(&[]), Err(PadError::NotThere(_))));
+        assert!(matches!(opener.choose(&[moved.clone(), other.clone()]), Err(PadError::Unusable(_))));
+        opener.last = Some(old.clone());
+        assert_eq!(opener.choose(&[other.clone(), moved.clone()]), Ok("event7".into()));
+        assert_eq!(opener.choose(&[moved.clone(), old]), Ok("event5".into()));
+        opener.path = Some("event5".into());
+        assert_eq!(opener.choose(&[moved]), Ok("event7".into()));
+        assert!(matches!(opener.choose(&[other]), Err(PadError::NotThere(_))));
     }
 }

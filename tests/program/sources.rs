@@ -86,6 +86,10 @@ fn what_cannot_be_is_refused_with_the_way_out() {
         ("source check ./nope.toml", "cannot be read"),
         ("source new Mine", "small letters"),
         ("run --pad load-cells --output none", "name its port, as in --pad load-cells:/dev/ttyUSB0"),
+        (
+            "run --pad serial:/dev/ttyUSB0 --source load-cells --output none",
+            "name its port, as in --pad load-cells:/dev/ttyUSB0",
+        ),
         ("run --pad nope:/dev/null --output none", "`nope` names no pad"),
         ("run --pad load-cells:/dev/null --output none", "not a serial port"),
         ("run --pad load-cells:/no-such-port --output none", "does not exist"),

@@ -16,6 +16,12 @@ use rustix::time::{ClockId, clock_gettime};
 /// A terminal may miss to report that it has room again, so the wait is bounded.
 pub(super) const RETRY_US: u64 = 10_000;
 
+/// A state that is told in no frames of its own is sent again after so long without a new one, µs: at twice the pace of the slowest pad.
+pub(super) const REPEAT_US: u64 = 5_000;
+
+/// Frames that are made of it are at least so far apart, µs.
+pub(super) const FRAME_MIN_US: u64 = 100;
+
 /// The monotonic clock, in microseconds since an arbitrary origin.
 pub(super) fn monotonic_us() -> u64 {
     let now = clock_gettime(ClockId::Monotonic);

@@ -112,7 +112,14 @@ fn address(pad: &PadAddress, source: &Source) -> Result<PadAddress, Failure> {
         (_, PadAddress::Virtual) => Err(Failure::Unusable(
             "--source describes a pad of your own, and the virtual pad is a strain pad: leave it out".into(),
         )),
-        (Origin::Lines(_), PadAddress::Auto { .. } | PadAddress::Hid { .. } | PadAddress::Usb { .. }) => {
+        (
+            Origin::Lines(_),
+            PadAddress::Auto { .. }
+            | PadAddress::Serial { .. }
+            | PadAddress::Hid { .. }
+            | PadAddress::Usb { .. },
+        ) => {
+            // The rate of lines is the description's, and serial: would take that of frames.
             Err(Failure::Unusable(format!(
                 "{name} prints lines of text and does not say who it is: name its port, as in --pad {name}:/dev/ttyUSB0 \
                  (`tactpad devices` lists them)"

@@ -16,11 +16,7 @@ use tactpad_core::quantity::WEIGHT_N_PER_G;
 use tactpad_core::source::codes::{BTN_TOUCH, MT_FIRST, MT_SLOT, MT_TRACKING_ID};
 use tactpad_core::source::{Evdev, FULL_N, Measures, Source, Touching};
 
-/// The last state is sent again after so long, µs.
-pub(super) const REPEAT_US: u64 = 5_000;
-
-/// Frames are at least so far apart, µs.
-const FRAME_MIN_US: u64 = 100;
+use crate::transport::pacing::{FRAME_MIN_US, REPEAT_US};
 
 /// Fingers of a touchpad that are followed.
 const SLOTS: usize = 16;

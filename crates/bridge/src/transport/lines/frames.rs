@@ -11,14 +11,13 @@ use firmware_proto::sample::Status;
 use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::source::Lines;
 
+use crate::transport::pacing::{FRAME_MIN_US, REPEAT_US};
+
 use super::look::{LineLook, LineOutcome};
 use super::still::StillCells;
 
 /// No sound line is longer, bytes.
 pub const LINE_BYTES_MAX: usize = 256;
-
-/// The last state is sent again after so long without a line, µs: at twice the pace of the slowest pad.
-pub const REPEAT_US: u64 = 5_000;
 
 /// The source is silent after so many of its longest recent intervals, …
 const SILENT_INTERVALS: u64 = 3;
@@ -34,9 +33,6 @@ const OTHER_FIELDS_LINES: u8 = 2;
 
 /// So many intervals are remembered.
 const INTERVALS: usize = 8;
-
-/// Frames are at least so far apart, µs.
-const FRAME_MIN_US: u64 = 100;
 
 /// What a line says: the counts, and a status for cells that say nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

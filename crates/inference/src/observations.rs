@@ -128,6 +128,18 @@ impl Observations {
         std::iter::once(false).chain(self.samples.windows(2).map(goes_on)).take(self.rows()).collect()
     }
 
+    /// These rows and all of the time series that they are of, in their order.
+    pub fn with_series(&self, rows: &[usize]) -> Vec<usize> {
+        let first_of_run = self.follows().into_iter().enumerate().scan(0, |first, (row, follows)| {
+            *first = if follows { *first } else { row };
+            Some(*first)
+        });
+        let first_of_run: Vec<usize> = first_of_run.collect();
+        let mut is_asked = vec![false; self.rows()];
+        rows.iter().for_each(|row| is_asked[first_of_run[*row]] = true);
+        (0..self.rows()).filter(|row| is_asked[first_of_run[*row]]).collect()
+    }
+
     /// Whether a channel tells anything at all.
     pub fn is_alive(&self, channel: usize) -> bool {
         self.is_told[channel].contains(&true)
@@ -172,6 +184,22 @@ impl Observations {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_bring_their_series_along_and_nothing_else() {
+        let trials = [None, Some(1), Some(1), Some(2), Some(1), Some(1), None];
+        let samples = trials.map(|trial| Sample { trial, ..Sample::default() });
+        let all = Observations {
+            channels: Vec::new(),
+            readings: Vec::new(),
+            is_told: Vec::new(),
+            samples: samples.to_vec(),
+            numbers: (0..7).collect(),
+        };
+        assert_eq!(all.with_series(&[2, 6]), [1, 2, 6]);
+        assert_eq!(all.with_series(&[5]), [4, 5]);
+        assert!(all.with_series(&[]).is_empty());
+    }
 
     #[test]
     fn each_measurement_has_a_zero_of_its_own() {

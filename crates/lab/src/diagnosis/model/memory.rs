@@ -183,6 +183,15 @@ impl RowInterval {
 }
 
 impl MemoryChain {
+    /// Whether a channel remembers the same by another.
+    pub(crate) fn is_same(&self, other: &Self, channel: usize) -> bool {
+        fn of<T: PartialEq>(one: &[T], other: &[T], is_own: impl Fn(&&T) -> bool + Copy) -> bool {
+            one.iter().filter(is_own).eq(other.iter().filter(is_own))
+        }
+        of(&self.plays, &other.plays, |it| it.channel == channel)
+            && of(&self.relaxations, &other.relaxations, |(own, _)| *own == channel)
+    }
+
     /// What a channel's memory adds to its strain, row by row; none where it remembers nothing. `early` says when between two rows
     /// the load has changed.
     pub(crate) fn added(

@@ -1,7 +1,7 @@
 //! From strains to readings, row by row, of any number of channels: what they remember, and the law of the channels.
 
 use super::chain::{Chain, Reference};
-use super::memory::RowSequence;
+use super::memory::{MemoryChain, RowSequence};
 use tactpad_inference::hypothesis::Parameter;
 use tactpad_inference::model::Signature;
 use tactpad_inference::observations::Sample;
@@ -9,23 +9,46 @@ use tactpad_inference::observations::Sample;
 /// Readings that change by less than this part of the largest reading do not change.
 const NOTHING: f64 = 1e-9;
 
-/// The strains of rows that follow each other so, with what the channels remember of them.
-pub(crate) fn remembered<R: AsRef<[f64]> + AsMut<[f64]>>(
-    mut strains: Vec<R>,
-    chain: &Chain,
-    course: &RowSequence,
-    full_scale: &[f64],
-) -> Vec<R> {
-    for (channel, full_scale) in full_scale.iter().enumerate() {
-        let own: Vec<f64> = strains.iter().map(|strain| strain.as_ref()[channel]).collect();
-        let added = chain.memory.added(course, channel, *full_scale, &own, 0.0).unwrap_or_default();
-        strains.iter_mut().zip(added).for_each(|(strain, added)| strain.as_mut()[channel] += added);
+/// Strains of rows that follow each other so, and the same with what the channels remember of them.
+pub(crate) struct StrainHistory<R> {
+    pub(crate) strains: Vec<R>,
+    memory: MemoryChain,
+    pub(crate) remembered: Vec<R>,
+}
+
+impl<R: AsRef<[f64]> + AsMut<[f64]> + Clone> StrainHistory<R> {
+    /// A channel whose strains and memory are those of a history `near` it is taken from there.
+    pub(crate) fn of(
+        strains: Vec<R>,
+        chain: &Chain,
+        course: &RowSequence,
+        full_scale: &[f64],
+        near: Option<&Self>,
+    ) -> Self {
+        let mut remembered = strains.clone();
+        for (channel, full_scale) in full_scale.iter().enumerate() {
+            let own = |of: &[R]| of.iter().map(|strain| strain.as_ref()[channel]).collect::<Vec<f64>>();
+            let is_same = |near: &&Self| {
+                chain.memory.is_same(&near.memory, channel) && own(&strains) == own(&near.strains)
+            };
+            let values = match near.filter(is_same) {
+                Some(near) => own(&near.remembered),
+                None => {
+                    let strains = own(&strains);
+                    let Some(added) = chain.memory.added(course, channel, *full_scale, &strains, 0.0) else {
+                        continue;
+                    };
+                    strains.iter().zip(added).map(|(strain, added)| strain + added).collect()
+                }
+            };
+            remembered.iter_mut().zip(values).for_each(|(strain, value)| strain.as_mut()[channel] = value);
+        }
+        Self { strains, memory: chain.memory.clone(), remembered }
     }
-    strains
 }
 
 /// Readings of the channels at strains with their memory, channel by channel.
-pub(crate) fn read<R: AsRef<[f64]>>(
+pub(crate) fn read<R: AsRef<[f64]> + AsMut<[f64]> + Clone>(
     strains: &[R],
     chain: &Chain,
     course: &RowSequence,
@@ -34,9 +57,9 @@ pub(crate) fn read<R: AsRef<[f64]>>(
 ) -> Vec<Vec<f64>> {
     let mut channels = vec![Vec::with_capacity(strains.len()); reference.full_scale.len()];
     for (strain, sample) in strains.iter().zip(samples) {
-        let mut row = strain.as_ref().to_vec();
-        chain.channels.read(&mut row, &reference.conditions(sample));
-        channels.iter_mut().zip(row).for_each(|(channel, value)| channel.push(value));
+        let mut row = strain.clone();
+        chain.channels.read(row.as_mut(), &reference.conditions(sample));
+        channels.iter_mut().zip(row.as_ref()).for_each(|(channel, value)| channel.push(*value));
     }
     let late = channels.iter_mut().zip(&chain.skew_s).filter(|(_, skew_s)| **skew_s != 0.0);
     for (channel, skew_s) in late {

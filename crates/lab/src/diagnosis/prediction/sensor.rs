@@ -20,7 +20,7 @@ use crate::diagnosis::data::target::Target;
 use crate::diagnosis::label::{Hypothesis, Label, ModelOfRows};
 use crate::diagnosis::model::chain::{Chain, Reference};
 use crate::diagnosis::model::memory::RowSequence;
-use crate::diagnosis::model::reading::{read, remembered, slopes};
+use crate::diagnosis::model::reading::{StrainHistory, read, slopes};
 use crate::diagnosis::model::setting::Setting;
 use crate::diagnosis::report::NotTestable;
 use crate::effect::{Effect, interned};
@@ -73,9 +73,8 @@ enum Change {
 struct Point<'p> {
     applied: &'p [(usize, Vec<f64>)],
     chain: Chain,
-    strains: Vec<Vec<f64>>,
-    /// m.
-    remembered: Vec<Vec<f64>>,
+    /// e and m.
+    history: StrainHistory<Vec<f64>>,
     readings: Vec<Vec<f64>>,
 }
 
@@ -270,9 +269,9 @@ impl Sensor {
     fn point<'p>(&self, applied: &'p [(usize, Vec<f64>)]) -> Point<'p> {
         let (chain, sizes) = self.chain(applied);
         let strains = self.strained(&chain, &sizes);
-        let remembered = self.remembered(strains.clone(), &chain);
-        let readings = self.read(&remembered, &chain);
-        Point { applied, chain, strains, remembered, readings }
+        let history = self.history(strains, &chain, None);
+        let readings = self.read(&history.remembered, &chain);
+        Point { applied, chain, history, readings }
     }
 
     /// ∂readings/∂ψ by one coordinate, at all rows.
@@ -282,6 +281,9 @@ impl Sensor {
         if parameters[parameter].shape.is_some() && held.is_none() {
             return vec![None; self.rest.len()];
         }
+        let with_memory = |strains: Vec<Vec<f64>>, chain: &Chain| {
+            self.read(&self.history(strains, chain, Some(&point.history)).remembered, chain)
+        };
         let moved = |by: f64| {
             let mut applied = point.applied.to_vec();
             let own = held.unwrap_or(applied.len());
@@ -292,23 +294,25 @@ impl Sensor {
             let (chain, sizes) = self.chain(&applied);
             match self.changes[at] {
                 Change::Cause(Cause { stage: ChainStage::Channels, .. }) => {
-                    self.read(&point.remembered, &chain)
+                    self.read(&point.history.remembered, &chain)
                 }
                 // What memory adds changes, and not the strains.
                 Change::Cause(Cause { stage: ChainStage::Mechanics | ChainStage::Coupling, .. }) => {
-                    self.read(&self.remembered(point.strains.clone(), &chain), &chain)
+                    with_memory(point.history.strains.clone(), &chain)
                 }
-                _ => {
-                    let strains = self.strained(&chain, &sizes);
-                    self.read(&self.remembered(strains, &chain), &chain)
-                }
+                _ => with_memory(self.strained(&chain, &sizes), &chain),
             }
         };
         slopes(&parameters[parameter], &point.readings, moved, &self.reference.full_scale)
     }
 
-    fn remembered(&self, strains: Vec<Vec<f64>>, chain: &Chain) -> Vec<Vec<f64>> {
-        remembered(strains, chain, &self.course, &self.reference.full_scale)
+    fn history(
+        &self,
+        strains: Vec<Vec<f64>>,
+        chain: &Chain,
+        near: Option<&StrainHistory<Vec<f64>>>,
+    ) -> StrainHistory<Vec<f64>> {
+        StrainHistory::of(strains, chain, &self.course, &self.reference.full_scale, near)
     }
 
     fn read(&self, remembered: &[Vec<f64>], chain: &Chain) -> Vec<Vec<f64>> {

@@ -46,9 +46,9 @@ pub(crate) struct Atlas<'f> {
     /// The rows in whose order `observations` are remembered: all, or those of another measurement.
     sequence: &'f Observations,
     /// About the pad that is held to be right.
-    first: Simulated<'f>,
+    first: Simulated,
     /// About the others, in the order of `solved`.
-    others: Vec<Simulated<'f>>,
+    others: Vec<Simulated>,
     solved: Vec<Solved>,
     /// For each hypothesis and each of its coordinates, how far the tangent reaches; none where the field does not change.
     reaches: Vec<Option<Vec<f64>>>,
@@ -194,7 +194,7 @@ impl<'f> Atlas<'f> {
         others.fold(own, |nearest, other| if other.0 <= nearest.0 { other } else { nearest }).1
     }
 
-    fn about(&self, applied: &[(usize, Vec<f64>)]) -> &Simulated<'f> {
+    fn about(&self, applied: &[(usize, Vec<f64>)]) -> &Simulated {
         self.nearest(applied).and_then(|k| self.others.get(k)).unwrap_or(&self.first)
     }
 

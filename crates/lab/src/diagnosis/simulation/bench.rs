@@ -13,8 +13,8 @@ use tactpad_core::quantity::CHANNELS;
 use tactpad_inference::model::{ChannelBaselines, Written};
 
 /// A pad under a chain.
-struct Bench<'s, 'f> {
-    simulated: &'s Simulated<'f>,
+struct Bench<'s> {
+    simulated: &'s Simulated,
     chain: Chain,
     /// What the weights of the chain change in the field, by written places; none where they change nothing.
     changed: Option<InfluenceField>,
@@ -22,14 +22,14 @@ struct Bench<'s, 'f> {
 
 /// The contacts that make the pad read what was read, row by row; none for a row that tells less than a contact's numbers.
 pub(crate) fn contacts(
-    simulated: &Simulated<'_>,
+    simulated: &Simulated,
     chain: Chain,
     changed: Option<InfluenceField>,
     radius_mm: f64,
     told: &ChannelBaselines<'_>,
 ) -> Vec<Option<Written>> {
     let of_order = simulated.of_order(&chain);
-    let observations = simulated.sequence;
+    let observations = &simulated.sequence;
     let mut rigs: Vec<RigErrors> = Vec::new();
     let mut rig_of = |row: &usize| {
         let rig = chain.rig_at(&observations.samples[*row]);
@@ -44,7 +44,7 @@ pub(crate) fn contacts(
         let chain = Chain { rig, ..chain.clone() };
         Inverse::new(Bench { simulated, chain, changed: changed.clone() }, radius_mm)
     };
-    let inverses: Vec<Inverse<Bench<'_, '_>>> = rigs.into_iter().map(under).collect();
+    let inverses: Vec<Inverse<Bench<'_>>> = rigs.into_iter().map(under).collect();
     let contact = |(at, row): (usize, &usize)| {
         let row = *row;
         let sample = &observations.samples[row];
@@ -68,7 +68,7 @@ pub(crate) fn contacts(
     simulated.picked.par_iter().enumerate().map(contact).collect()
 }
 
-impl Forward for Bench<'_, '_> {
+impl Forward for Bench<'_> {
     /// Strains by a unit of true force along each axis.
     type Site = Maps;
 

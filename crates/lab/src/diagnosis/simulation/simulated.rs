@@ -12,7 +12,7 @@ use crate::diagnosis::label::{Hypothesis, Label};
 use crate::diagnosis::model::chain::{Chain, Reference};
 use crate::diagnosis::model::mechanics::{Maps, at_places, changes, side_share};
 use crate::diagnosis::model::memory::{MemoryChain, RowSequence};
-use crate::diagnosis::model::reading::{read, remembered, slopes};
+use crate::diagnosis::model::reading::{StrainHistory, read, slopes};
 use crate::diagnosis::model::setting::{Change, Setting};
 use crate::diagnosis::report::NotTestable;
 use crate::effect::Effect;
@@ -37,10 +37,10 @@ const ERRORS_LIKE: [(Effect, f64); 2] = [(Effect::PlateStiffness, 0.015), (Effec
 const STEP: f64 = 1e-3;
 
 /// Nine channels by a pad's field.
-pub(crate) struct Simulated<'f> {
+pub(crate) struct Simulated {
     signals: InfluenceField,
-    /// The rows in their order: what is remembered is so in that.
-    pub(crate) sequence: &'f Observations,
+    /// The rows that are asked for, and all of their series, in their order: what is remembered is so in that.
+    pub(crate) sequence: Observations,
     course: RowSequence,
     /// The rows of it that are asked for.
     pub(crate) picked: Vec<usize>,
@@ -48,6 +48,8 @@ pub(crate) struct Simulated<'f> {
     measurements: usize,
     setting: Setting,
     reference: Reference,
+    /// Root mean square of the loads of the whole measurement.
+    load_rms_n: f64,
     hypotheses: Vec<Hypothesis>,
     causes: Vec<&'static Cause>,
     /// The device's own imperfections.
@@ -61,13 +63,12 @@ struct Point<'p> {
     applied: &'p [(usize, Vec<f64>)],
     chain: Chain,
     rows: Vec<Row>,
-    /// Their strains with what the channels remember of them.
-    remembered: Vec<[f64; CHANNELS]>,
+    history: StrainHistory<[f64; CHANNELS]>,
     /// Each channel's readings at the rows that are asked for.
     readings: Vec<Vec<f64>>,
 }
 
-impl<'f> Simulated<'f> {
+impl Simulated {
     /// The pad at some `observations` of a `sequence`, about the `field` of its `own` device: hypotheses and references are those of
     /// `all` rows and of the pad that is held to be right, so that any part, about any field, has the same. Nobody asks for the effects in `without`.
     pub(crate) fn new(
@@ -76,12 +77,18 @@ impl<'f> Simulated<'f> {
         own: &Device,
         field: &PadField,
         all: &Observations,
-        sequence: &'f Observations,
+        sequence: &Observations,
         observations: &Observations,
     ) -> Self {
-        let course =
-            |of: &Observations| RowSequence::of(&of.samples, &of.follows(), pad.device.contact.full_scale_n);
-        let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all, &course(all));
+        let course = |samples: &[Sample], follows: &[bool]| {
+            RowSequence::of(samples, follows, pad.device.contact.full_scale_n)
+        };
+        let changes = changes(pad.device, own, field, pad.flaws);
+        let setting = setting(pad.device, changes, all, &course(&all.samples, &all.follows()));
+        let needed = sequence.with_series(&observations.numbers);
+        let follows = sequence.follows();
+        let follows: Vec<bool> = needed.iter().map(|row| follows[*row]).collect();
+        let sequence = sequence.picked(&needed);
         let (hypotheses, causes) = hypotheses(&setting, |effect| !without.contains(&effect));
         let places_mm: Vec<[f64; 2]> = sequence.samples.iter().map(|sample| sample.place_mm).collect();
         let reference = reference(pad.device, pad.field, all);
@@ -90,10 +97,11 @@ impl<'f> Simulated<'f> {
             own: own_chain(pad.device, weights, &reference),
             signals: field.signals.clone(),
             reference,
+            load_rms_n: all.load_rms(),
             changes: at_places(field, pad.flaws, pad.device.plate.radius_mm(), &places_mm),
+            course: course(&sequence.samples, &follows),
             sequence,
-            course: course(sequence),
-            picked: observations.numbers.clone(),
+            picked: observations.numbers.iter().map(|row| needed.partition_point(|it| it < row)).collect(),
             measurements: all.samples.iter().map(|it| it.measurement + 1).max().unwrap_or(1),
             setting,
             hypotheses,
@@ -165,8 +173,13 @@ impl<'f> Simulated<'f> {
     }
 
     /// The strains of all rows, with what the channels remember of them.
-    fn remembered(&self, strains: Vec<[f64; CHANNELS]>, chain: &Chain) -> Vec<[f64; CHANNELS]> {
-        remembered(strains, chain, &self.course, &self.reference.full_scale)
+    fn history(
+        &self,
+        strains: Vec<[f64; CHANNELS]>,
+        chain: &Chain,
+        near: Option<&StrainHistory<[f64; CHANNELS]>>,
+    ) -> StrainHistory<[f64; CHANNELS]> {
+        StrainHistory::of(strains, chain, &self.course, &self.reference.full_scale, near)
     }
 
     /// Half of what friction adds to strains that are too large by the largest background, less what to ones that are too small; and
@@ -174,14 +187,13 @@ impl<'f> Simulated<'f> {
     fn doubts(&self, Point { rows, chain, .. }: &Point<'_>) -> Vec<Vec<f64>> {
         let magnitude = |row: &Row| libm::sqrt(row.force_n.iter().map(|n| n * n).sum());
         let magnitudes: Vec<f64> = rows.iter().map(magnitude).collect();
-        let load_rms = rms(magnitudes.iter().copied());
         let strains: Vec<[f64; CHANNELS]> = rows.iter().map(|row| row.strain(chain)).collect();
         let friction = MemoryChain { relaxations: Vec::new(), ..chain.memory.clone() };
         let creep = MemoryChain { plays: Vec::new(), ..chain.memory.clone() };
         let doubt = |channel: usize| {
             let (full_scale, size) = (self.reference.full_scale[channel], self.reference.sizes[channel]);
             let added = |memory: &MemoryChain, off: f64, early: f64| {
-                let off = |magnitude: f64| off * BACKGROUND_MAX * size * magnitude / load_rms;
+                let off = |magnitude: f64| off * BACKGROUND_MAX * size * magnitude / self.load_rms_n;
                 let own = strains.iter().zip(&magnitudes).map(|(strain, it)| strain[channel] + off(*it));
                 memory.added(&self.course, channel, full_scale, &own.collect::<Vec<_>>(), early)
             };
@@ -221,7 +233,7 @@ impl<'f> Simulated<'f> {
         let mut alone = Chain { memory: MemoryChain::default(), ..chain.clone() };
         alone.rig.lag_s = 0.0;
         alone.skew_s.fill(0.0);
-        let read = |chain: &Chain| self.read(&self.strained(&self.rows(chain), chain), chain);
+        let read = |chain: &Chain| self.read(&self.strained(&self.rows(chain), chain).remembered, chain);
         let channels = read(chain).into_iter().zip(read(&alone));
         channels.map(|(all, alone)| all.iter().zip(alone).map(|(a, b)| a - b).collect()).collect()
     }
@@ -229,15 +241,15 @@ impl<'f> Simulated<'f> {
     fn point<'p>(&self, applied: &'p [(usize, Vec<f64>)]) -> Point<'p> {
         let chain = self.chain(applied);
         let rows = self.rows(&chain);
-        let remembered = self.strained(&rows, &chain);
-        let readings = self.read(&remembered, &chain);
-        Point { applied, chain, rows, remembered, readings }
+        let history = self.strained(&rows, &chain);
+        let readings = self.read(&history.remembered, &chain);
+        Point { applied, chain, rows, history, readings }
     }
 
     /// The readings with one more hypothesis, of which only what it can change is computed anew.
     fn perturbed(
         &self,
-        Point { rows, remembered, .. }: &Point<'_>,
+        Point { rows, history, .. }: &Point<'_>,
         stage: ChainStage,
         chain: &Chain,
     ) -> Vec<Vec<f64>> {
@@ -249,14 +261,14 @@ impl<'f> Simulated<'f> {
             ChainStage::Mechanics | ChainStage::Coupling => {
                 rows.iter().map(|row| row.strain(chain)).collect()
             }
-            ChainStage::Channels => return self.read(remembered, chain),
+            ChainStage::Channels => return self.read(&history.remembered, chain),
         };
-        self.read(&self.remembered(strains, chain), chain)
+        self.read(&self.history(strains, chain, Some(history)).remembered, chain)
     }
 
     /// The strains of all rows, and with their memory.
-    fn strained(&self, rows: &[Row], chain: &Chain) -> Vec<[f64; CHANNELS]> {
-        self.remembered(rows.iter().map(|row| row.strain(chain)).collect(), chain)
+    fn strained(&self, rows: &[Row], chain: &Chain) -> StrainHistory<[f64; CHANNELS]> {
+        self.history(rows.iter().map(|row| row.strain(chain)).collect(), chain, None)
     }
 
     /// ∂readings/∂ln g where all modules' x, y or z channels answer g times: with all that is remembered.
@@ -264,7 +276,7 @@ impl<'f> Simulated<'f> {
         let moved = |by: f64| {
             let mut chain = point.chain.clone();
             (axis..CHANNELS).step_by(3).for_each(|channel| chain.channels.gain[channel] *= by.exp());
-            self.read(&point.remembered, &chain)
+            self.read(&point.history.remembered, &chain)
         };
         let channels = moved(STEP).into_iter().zip(moved(-STEP)).enumerate();
         let slope = |(above, below): (f64, f64)| (above - below) / (2.0 * STEP);
@@ -324,7 +336,7 @@ impl<'f> Simulated<'f> {
     }
 }
 
-impl Model<Label> for Simulated<'_> {
+impl Model<Label> for Simulated {
     fn hypotheses(&self) -> &[Hypothesis] {
         &self.hypotheses
     }

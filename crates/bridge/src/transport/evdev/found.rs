@@ -10,7 +10,7 @@ use tactpad_core::source::codes::{BTN_TOUCH, InputCode, MT_FIRST, MT_SLOT, MT_TR
 use tactpad_core::source::{Evdev, Measures, Origin, Source};
 
 /// Where the kernel lists input devices.
-const CLASS: &str = "/sys/class/input";
+pub(super) const CLASS: &str = "/sys/class/input";
 
 /// An input device, by what it tells of itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,9 @@
 //! A Wii Balance Board by the kernel's real driver: a board of software below it, the bridge above it, and what a game sees.
 
-use std::fs;
-use std::path::Path;
+use std::fs::{self, Permissions};
+use std::os::unix::fs::PermissionsExt;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use evdev::KeyCode;
@@ -9,7 +11,7 @@ use tactpad::numeric::random::SplitMix64;
 
 use crate::bridge::TACTPAD;
 use crate::clock::MS;
-use crate::owned_pads::{comes_true, pause};
+use crate::owned_pads::{comes_true, devices, pause};
 use crate::program::Running;
 use crate::reader::{Reader, find};
 use crate::wiimote::{Board, Load, Make, NOTHING};
@@ -213,7 +215,7 @@ impl Session {
     fn lean_and_back(&mut self) {
         let (load, meant) = self.lean();
         let for_ms = whole_between(&mut self.random, 150, 700);
-        self.unsaid += usize::from(self.make.most_kg(load) < 0.0);
+        self.unsaid += usize::from(self.make.is_unsaid(load));
         self.play(&format!("{load:?} for {for_ms} ms"), load, for_ms, meant);
     }
 
@@ -237,15 +239,27 @@ impl Session {
         self.expect("a board within reach again", &[]);
     }
 
+    /// Leans so hard that a direction and a button are held.
+    fn hold_both(&mut self) -> (Load, Vec<Edge>) {
+        let (load, meant) = self.lean();
+        let fz_n = between(&mut self.random, self.player.stamp_n);
+        (Load { fz_n, ..load }, [meant, &[self.player.stamp]].concat())
+    }
+
     /// Its connection ends while it is leaned on; some tries to connect it again are cut short.
     fn drop_and_come_back(&mut self) {
-        let (load, meant) = self.lean();
+        let (load, meant) = if self.random.fraction() < 0.5 {
+            self.hold_both()
+        } else {
+            let (load, meant) = self.lean();
+            (load, meant.to_vec())
+        };
         self.board().bear(load);
-        pause(whole_between(&mut self.random, 150, 700));
-        self.expect("before the connection ends", &[meant]);
+        pause(whole_between(&mut self.random, 600, 900));
+        self.expect("before the connection ends", &[&meant]);
         let dropped_ns = self.board.take().expect("it was connected").drop_connection();
         pause(LET_GO_MS);
-        let released_ns = self.expect("after the connection ended", &[&released(meant)]);
+        let released_ns = self.expect("after the connection ended", &[&released(&meant)]);
         assert!(released_ns <= dropped_ns + LET_GO_MS * MS, "let go too late");
         while self.random.fraction() < 0.4 {
             let board = Board::connect(&self.make);
@@ -303,4 +317,91 @@ pub(crate) fn seated() {
 /// People of 31 to 112 kg on such boards.
 pub(crate) fn standing() {
     seeds().for_each(|seed| plays_through(seed, Player::standing));
+}
+
+/// A user of the guest who is not root.
+const SOMEBODY: u32 = 1_000;
+
+/// The program, as somebody who is not root runs it.
+fn as_somebody(arguments: &[&str]) -> Command {
+    let mut command = Command::new(TACTPAD);
+    command.args(arguments).uid(SOMEBODY).gid(SOMEBODY);
+    command
+}
+
+fn told(command: &mut Command) -> String {
+    String::from_utf8(command.output().expect("the program runs").stdout).expect("text")
+}
+
+/// Lets everybody do what these bits say.
+fn permit(node: &Path, mode: u32) {
+    fs::set_permissions(node, Permissions::from_mode(mode)).expect("a node of the guest");
+}
+
+/// The only raw node, and the board's input device by what `devices` lists.
+fn nodes() -> [PathBuf; 2] {
+    let mut raw = fs::read_dir("/sys/class/hidraw").expect("sysfs").flatten();
+    let raw = Path::new("/dev").join(raw.next().expect("the board's").file_name());
+    let listed: serde_json::Value = serde_json::from_str(&devices()).expect("a document");
+    let path = listed["input_devices"][0]["path"].as_str().expect("the board");
+    [raw, path.into()]
+}
+
+/// Who may read a board, or its own reports, is told so by command, and so is a battery that is low. Without the reports the driver's axes
+/// play, which do not tell what is light.
+pub(crate) fn access() {
+    let mut make = Make::drawn(&mut SplitMix64::named(0, "access"));
+    let board = Board::connect(&make);
+    comes_true("the board is known", || devices().contains("\"source\":\"balance-board\""));
+    // The board's own reports say 5.2 V; to its driver it says the same whatever its batteries are.
+    assert!(devices().contains("\"battery\":{\"volts\":5.17"), "{}", devices());
+    let [raw, input] = nodes();
+    permit(&raw, 0o600);
+    permit(&input, 0o600);
+    let command = format!("sudo setfacl -m u:$USER:r {} {}\n", input.display(), raw.display());
+    let doctor = told(&mut as_somebody(&["doctor"]));
+    assert!(doctor.contains(&command) && doctor.contains("its battery at 94 %"), "{doctor}");
+    permit(&input, 0o644);
+    let command = format!("sudo setfacl -m u:$USER:r {}\n", raw.display());
+    let doctor = told(&mut as_somebody(&["doctor"]));
+    assert!(doctor.contains(&command) && doctor.contains("below that cell's zero"), "{doctor}");
+
+    permit(Path::new("/dev/uinput"), 0o666);
+    let folder = tempfile::tempdir().expect("a folder");
+    permit(folder.path(), 0o777);
+    let light = Load { fz_n: 30.0, x: 0.5, y: 0.0 };
+    let heavy = Load { fz_n: 500.0, x: 0.0, y: 0.0 };
+    make.rest_kg = [-4.0; 4];
+    drop(board);
+    comes_true("the board goes", || !devices().contains("balance-board"));
+    for (mode, wanted) in [(0o600, &[][..]), (0o644, &[("ABS_HAT0X", 1), ("ABS_HAT0X", 0)][..])] {
+        let board = Board::connect(&make);
+        comes_true("the board is known", || devices().contains("balance-board"));
+        let [raw, input] = nodes();
+        permit(&raw, mode);
+        permit(&input, 0o644);
+        let mut command = as_somebody(&["run", "--pad", "balance-board", "--output", "uinput"]);
+        let program =
+            Running::start_command(command.env("XDG_RUNTIME_DIR", folder.path()).env("HOME", folder.path()));
+        comes_true("the bridge's gamepad", || find(KeyCode::BTN_EAST).is_some());
+        let mut reader = Reader::open(&find(KeyCode::BTN_EAST).expect("it was there a moment ago"));
+        pause(READY_MS);
+        for load in [light, NOTHING, heavy, NOTHING] {
+            board.bear(load);
+            pause(300);
+        }
+        reader.read_available();
+        let stamp = [("BTN_SOUTH", 1), ("BTN_SOUTH", 0)];
+        assert_eq!(reader.edges(), [wanted, &stamp].concat(), "{mode:o}: {}", program.complaints());
+        drop((program, board));
+        comes_true("all of it goes", || {
+            find(KeyCode::BTN_EAST).is_none() && !devices().contains("balance-board")
+        });
+    }
+
+    make.battery = 0x60;
+    let _board = Board::connect(&make);
+    comes_true("the board is known", || devices().contains("balance-board"));
+    let doctor = told(Command::new(TACTPAD).arg("doctor"));
+    assert!(doctor.contains("its battery at 3.8 V, which is low"), "{doctor}");
 }

@@ -156,6 +156,14 @@ fn who_stands_on_a_balance_board_plays_by_the_real_driver() {
 }
 
 #[test]
+fn a_balance_board_that_may_not_be_read_is_told_of_and_plays_as_far_as_it_can() {
+    in_guest(
+        "a_balance_board_that_may_not_be_read_is_told_of_and_plays_as_far_as_it_can",
+        balance_board::access,
+    );
+}
+
+#[test]
 fn sdl_sees_a_game_controller() {
     if sdl::probe_is_there() {
         in_guest("sdl_sees_a_game_controller", sdl::game_controller);

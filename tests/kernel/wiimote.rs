@@ -69,7 +69,7 @@ pub(crate) struct Make {
     /// What each cell reads under 0, 17 and 34 kg.
     points: [[u16; 3]; 4],
     /// What each cell seems to bear while nothing lies on it, kg.
-    rest_kg: [f64; 4],
+    pub(crate) rest_kg: [f64; 4],
     /// Time from a request to its answer, ns.
     latency_ns: u64,
     /// What the battery reads.
@@ -107,10 +107,9 @@ impl Make {
         }
     }
 
-    /// What no cell bears more than, where this lies on the board, kg beyond its zero: below 0 for what the driver does not say.
-    pub(crate) fn most_kg(&self, load: Load) -> f64 {
-        let kg = (0..4).map(|cell| load.kg(cell) + self.rest_kg[cell]);
-        kg.fold(f64::NEG_INFINITY, f64::max)
+    /// Whether all cells read less than their own zero while this lies on the board: the driver's axes say nothing of it.
+    pub(crate) fn is_unsaid(&self, load: Load) -> bool {
+        (0..4).all(|cell| load.kg(cell) + self.rest_kg[cell] < 0.0)
     }
 }
 

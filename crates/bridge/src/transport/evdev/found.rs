@@ -47,9 +47,10 @@ pub fn attached(names: &[String]) -> Vec<FoundDevice> {
     found
 }
 
-/// The command that lets a user read a node.
-pub fn reading_command(path: &Path) -> String {
-    format!("sudo setfacl -m u:$USER:r {}", path.display())
+/// The command that lets a user read these nodes.
+pub fn reading_command(paths: &[&Path]) -> String {
+    let list: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    format!("sudo setfacl -m u:$USER:r {}", list.join(" "))
 }
 
 impl FoundDevice {

@@ -163,7 +163,7 @@ fn open_device(path: &Path) -> io::Result<RawDevice> {
 }
 
 fn open_error(path: &Path, error: &io::Error) -> PadError {
-    let (path, command) = (path.display(), reading_command(path));
+    let (path, command) = (path.display(), reading_command(&[path]));
     match error.kind() {
         io::ErrorKind::NotFound => PadError::NotThere(format!("{path} is gone: plug the device in")),
         io::ErrorKind::PermissionDenied => PadError::Denied(format!(

@@ -22,6 +22,9 @@ pub(super) const REPORT_LEN: usize = 64;
 /// A driver's file with the factory's numbers of a board.
 const CALIBRATION_FILE: &str = "bboard_calib";
 
+/// The board is asked so often for them: an answer may be lost.
+const CALIBRATION_TRIES: u32 = 3;
+
 /// Bytes of that file, and more.
 const CALIBRATION_LEN: usize = 128;
 
@@ -56,13 +59,13 @@ pub(super) enum Heard {
 impl ReportReader {
     /// Opens the reports of the Balance Board whose input device is at `node`; `None` where that is not possible or not allowed.
     ///
-    /// The driver asks the board for its numbers each time, which may take two seconds, so a thread waits for them.
+    /// The driver asks the board for its numbers each time, which may take seconds, so a thread waits for them.
     pub(super) fn open(node: &Path) -> Option<Self> {
         let file = beside::folder(node)?.join(CALIBRATION_FILE);
         let node = open(&beside::raw_node(node)?.path)?;
         let (asked, teller) = pipe_with(PipeFlags::CLOEXEC | PipeFlags::NONBLOCK).ok()?;
         let tell = move || {
-            let told = fs::read(file).unwrap_or_default();
+            let told = (0..CALIBRATION_TRIES).find_map(|_| fs::read(&file).ok()).unwrap_or_default();
             // Who asked may have gone, and an end without a word says that there are no numbers.
             let _ =
                 rustix::io::write(&teller, told.get(..CALIBRATION_LEN.min(told.len())).unwrap_or_default());

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use evdev::KeyCode;
+use rustix::process::Signal;
 use tactpad::numeric::random::SplitMix64;
 
 use crate::bridge::TACTPAD;
@@ -47,6 +48,8 @@ const DIRECTIONS: [&[Edge]; 8] = [
 /// How somebody plays on a board.
 struct Player {
     source: &'static str,
+    /// Whether the board's own reports are taken; else the driver's axes alone.
+    takes_reports: bool,
     /// A shipped profile, which plays in eight directions here.
     profile: &'static str,
     /// What lies on the board between two deeds.
@@ -68,6 +71,7 @@ impl Player {
     fn seated() -> Self {
         Self {
             source: "balance-board",
+            takes_reports: true,
             profile: "super-mario",
             rest: NOTHING,
             lean_n: [30.0, 85.0],
@@ -86,6 +90,7 @@ impl Player {
         let [x, y] = [0, 1].map(|_| between(random, [-0.1, 0.1]));
         Self {
             source: "balance-board-standing",
+            takes_reports: true,
             profile: "board-standing",
             rest: Load { fz_n: weight_n, x, y },
             lean_n: [0.97 * weight_n, 1.03 * weight_n],
@@ -122,23 +127,26 @@ struct Session {
 impl Session {
     /// Connects a board, and starts the bridge on it.
     fn start(mut random: SplitMix64, player: Player) -> Self {
-        let make = Make::drawn(&mut random);
+        let mut make = Make::drawn(&mut random);
+        if !player.takes_reports {
+            // The driver tells what lies on a cell beyond its zero.
+            make.rest_kg = [0.5; 4];
+        }
         let board = Board::connect(&make);
         let folder = tempfile::tempdir().expect("a folder").keep();
-        let profile = Path::new("mappings").join(player.profile).with_extension("toml");
-        let profile = fs::read_to_string(profile).expect("a shipped profile").replace("\"4way\"", "\"8way\"");
+        let shipped = |folder: &str, name: &str| {
+            fs::read_to_string(Path::new(folder).join(name).with_extension("toml")).expect("a shipped file")
+        };
+        let profile = shipped("mappings", player.profile).replace("\"4way\"", "\"8way\"");
         fs::write(folder.join("profile.toml"), profile).expect("a profile");
+        let mut source = shipped("models/sources", player.source);
+        if !player.takes_reports {
+            source = source.replace("reports = ", "# reports = ");
+        }
+        fs::write(folder.join("source.toml"), source).expect("a description");
         let mut command = Command::new(TACTPAD);
-        command.args([
-            "run",
-            "--pad",
-            player.source,
-            "--profile",
-            "./profile.toml",
-            "--output",
-            "uinput",
-            "--wait",
-        ]);
+        command.args(["run", "--pad", player.source, "--source", "./source.toml"]);
+        command.args(["--profile", "./profile.toml", "--output", "uinput", "--wait"]);
         let mut program = Running::start_command(command.current_dir(&folder));
         // The driver's own device has the button that games call south.
         comes_true("the bridge's gamepad", || {
@@ -239,6 +247,35 @@ impl Session {
         self.expect("a board within reach again", &[]);
     }
 
+    /// The bridge is stopped while the lean ends, shortly or for longer than the kernel keeps what is reported.
+    fn stop(&mut self) {
+        let (load, meant) = self.lean();
+        self.board().bear(load);
+        pause(300);
+        self.program.signal(Signal::STOP);
+        pause(20);
+        self.board().bear(self.player.rest);
+        pause(whole_between(&mut self.random, 50, 1_500));
+        self.program.signal(Signal::CONT);
+        pause(LET_GO_MS);
+        self.expect("a bridge that was stopped", &[meant, &released(meant)]);
+        pause(WEIGHED_MS);
+        self.expect("a bridge that goes on", &[]);
+    }
+
+    /// Somebody looks at the battery in the middle of a lean: that holds up nothing.
+    fn look_at_battery(&mut self) {
+        let (load, meant) = self.lean();
+        self.board().bear(load);
+        pause(300);
+        let listed = devices();
+        assert!(listed.contains("\"battery\":{"), "{listed}");
+        pause(300);
+        self.board().bear(self.player.rest);
+        pause(300);
+        self.expect("a look at the battery", &[meant, &released(meant)]);
+    }
+
     /// Leans so hard that a direction and a button are held.
     fn hold_both(&mut self) -> (Load, Vec<Edge>) {
         let (load, meant) = self.lean();
@@ -286,14 +323,16 @@ fn seeds() -> std::ops::Range<u64> {
 fn plays_through(seed: u64, player: impl Fn(&mut SplitMix64) -> Player) {
     let mut random = SplitMix64::named(seed, "board");
     let player = player(&mut random);
-    let (source, is_seated) = (player.source, player.rest == NOTHING);
+    let (source, needs_reports) = (player.source, player.takes_reports && player.rest == NOTHING);
     let mut session = Session::start(random, player);
     let mut drops = 0;
     for _ in 0..DEEDS {
-        match session.random.next_bits() % 10 {
+        match session.random.next_bits() % 12 {
             0..=4 => session.lean_and_back(),
             5..=7 => session.press_and_back(),
             8 => session.stall(),
+            9 => session.stop(),
+            10 => session.look_at_battery(),
             _ => {
                 session.drop_and_come_back();
                 drops += 1;
@@ -304,7 +343,7 @@ fn plays_through(seed: u64, player: impl Fn(&mut SplitMix64) -> Player) {
         "{source}, seed {seed}: {DEEDS} deeds, {drops} drops, {} leans that the driver does not tell",
         session.unsaid
     );
-    assert!(!is_seated || session.unsaid > 0, "no lean was light enough to need the board's own reports");
+    assert!(!needs_reports || session.unsaid > 0, "no lean was light enough to need the board's own reports");
     drop(session);
     comes_true("the gamepad goes", || find(KeyCode::BTN_EAST).is_none());
 }
@@ -317,6 +356,12 @@ pub(crate) fn seated() {
 /// People of 31 to 112 kg on such boards.
 pub(crate) fn standing() {
     seeds().for_each(|seed| plays_through(seed, Player::standing));
+}
+
+/// The same by the driver's axes alone, on boards whose cells read their own zero.
+pub(crate) fn by_the_driver_alone() {
+    let player = || Player { takes_reports: false, ..Player::seated() };
+    seeds().for_each(|seed| plays_through(seed, |_| player()));
 }
 
 /// A user of the guest who is not root.

@@ -151,6 +151,14 @@ fn hands_on_a_balance_board_play_by_the_real_driver() {
 }
 
 #[test]
+fn hands_on_a_balance_board_play_by_the_real_drivers_axes_alone() {
+    in_guest(
+        "hands_on_a_balance_board_play_by_the_real_drivers_axes_alone",
+        balance_board::by_the_driver_alone,
+    );
+}
+
+#[test]
 fn who_stands_on_a_balance_board_plays_by_the_real_driver() {
     in_guest("who_stands_on_a_balance_board_plays_by_the_real_driver", balance_board::standing);
 }

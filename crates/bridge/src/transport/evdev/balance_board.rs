@@ -20,7 +20,9 @@ const CELLS_AT: usize = 3;
 /// Where the battery is.
 const BATTERY_AT: usize = CELLS_AT + 10;
 
-/// Counts of the battery for a volt of its four cells, as users have measured it (<https://forum.wiibrew.org/read.php?27,60854>).
+/// Counts of the battery for a volt of its four cells together, as a user has measured it.
+///
+/// Source: <http://forum.wiibrew.org/read.php?27,1310394421,newer>, July 2011.
 const BATTERY_PER_V: f32 = 25.3;
 
 /// Weights of which the factory wrote down what each cell reads, in the driver's unit of 10 g.

@@ -263,13 +263,17 @@ impl Session {
         self.expect("a bridge that goes on", &[]);
     }
 
-    /// Somebody looks at the battery in the middle of a lean: that holds up nothing.
+    /// Somebody looks at the battery in the middle of a lean, and the desktop asks the driver for it: that holds up nothing.
     fn look_at_battery(&mut self) {
         let (load, meant) = self.lean();
         self.board().bear(load);
         pause(300);
         let listed = devices();
         assert!(listed.contains("\"battery\":{"), "{listed}");
+        pause(whole_between(&mut self.random, 0, 20));
+        let battery = fs::read_dir("/sys/class/power_supply").expect("sysfs").flatten().next();
+        let charge = battery.and_then(|battery| fs::read_to_string(battery.path().join("capacity")).ok());
+        assert_eq!(charge.as_deref(), Some("94\n"));
         pause(300);
         self.board().bear(self.player.rest);
         pause(300);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The Linux kernel of the kernel tests.
 #
-#   tests/kernel/build-kernel.sh              builds it and puts it where they look for it: five minutes of processor time
+#   tests/kernel/build-kernel.sh              builds it and puts it where they look for it: six minutes of processor time
 #   tests/kernel/build-kernel.sh --path       says where they look for it
 #   tests/kernel/build-kernel.sh --fits FILE  says by its exit code whether a ready kernel has all settings of uml.config
 #

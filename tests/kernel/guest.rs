@@ -78,7 +78,7 @@ fn run(time: Time, name: &str, body: impl FnOnce()) {
         println!("{BODY_DONE}");
         return;
     }
-    let Some(kernel) = kernel_for(time) else { return };
+    let Some(kernel) = usable_kernel() else { return };
     let processor = next_processor();
     let lock = File::create(scratch().join(format!("guest-{processor}.lock"))).expect("a lock file");
     lock.lock().expect("the guest's turn");
@@ -107,7 +107,7 @@ fn run(time: Time, name: &str, body: impl FnOnce()) {
 }
 
 /// The kernel, if this machine has all that a guest needs.
-fn kernel_for(time: Time) -> Option<PathBuf> {
+fn usable_kernel() -> Option<PathBuf> {
     let kernel = kernel();
     let is_there = require(&kernel.to_string_lossy(), BUILD)
         && require("busybox", "apt-get install busybox-static")
@@ -115,22 +115,25 @@ fn kernel_for(time: Time) -> Option<PathBuf> {
     if !is_there {
         return None;
     }
-    if time == Time::Virtual && !has_virtual_time(&kernel) {
-        leave_out(&format!("virtual time in {}", kernel.display()), BUILD);
+    if !has_all_settings(&kernel) {
+        leave_out(&format!("a setting of tests/kernel/uml.config in {}", kernel.display()), BUILD);
         return None;
     }
     Some(kernel)
 }
 
-/// What makes the kernel.
+/// What makes the kernel, and knows where it lies.
 const BUILD: &str = "tests/kernel/build-kernel.sh";
 
-/// Whether the kernel was built with virtual time. It tells its settings without booting.
-fn has_virtual_time(kernel: &Path) -> bool {
+fn build_script() -> Command {
+    Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join(BUILD))
+}
+
+/// Whether the kernel was built as the tests need it; one that `TACTPAD_UML` names may be older.
+fn has_all_settings(kernel: &Path) -> bool {
     static ANSWER: OnceLock<bool> = OnceLock::new();
     *ANSWER.get_or_init(|| {
-        let told = Command::new(kernel).arg("--showconfig").output().expect("the kernel's settings");
-        String::from_utf8_lossy(&told.stdout).lines().any(|line| line == "CONFIG_UML_TIME_TRAVEL_SUPPORT=y")
+        build_script().arg("--fits").arg(kernel).status().expect("the kernel's script").success()
     })
 }
 
@@ -197,10 +200,13 @@ pub(crate) fn scratch() -> &'static Path {
 }
 
 fn kernel() -> PathBuf {
-    let named = env::var_os("TACTPAD_UML").map(PathBuf::from);
-    let cache = env::var_os("XDG_CACHE_HOME")
-        .map_or_else(|| PathBuf::from(env::var_os("HOME").unwrap_or_default()).join(".cache"), PathBuf::from);
-    named.unwrap_or_else(|| cache.join("tactpad/linux-uml-6.12"))
+    env::var_os("TACTPAD_UML").map_or_else(
+        || {
+            let told = build_script().arg("--path").output().expect("the kernel's script");
+            PathBuf::from(String::from_utf8_lossy(&told.stdout).trim())
+        },
+        PathBuf::from,
+    )
 }
 
 /// The guest's first root: its first process, a shell to run that, and the command.

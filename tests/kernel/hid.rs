@@ -1,8 +1,6 @@
 //! A HID pad made with uhid: the kernel takes it for a USB device.
 
-use std::fs::{self, File, OpenOptions, read_dir};
-use std::io::{Read, Write};
-use std::os::fd::AsFd;
+use std::fs::{self, read_dir};
 use std::path::Path;
 
 use evdev::KeyCode;
@@ -19,25 +17,14 @@ use crate::pad::{NONE, PRESS, PRESS_RIGHT, RIGHT, Touch, period_ns};
 use crate::program::Running;
 use crate::reader::{Reader, find};
 use crate::sdl;
-
-// Kinds of events on /dev/uhid. Source: Linux, include/uapi/linux/uhid.h.
-const UHID_DESTROY: u32 = 1;
-const UHID_OUTPUT: u32 = 6;
-const UHID_CREATE2: u32 = 11;
-const UHID_INPUT2: u32 = 12;
-
-/// Bytes of a report, or of a report descriptor, in an event.
-const DATA_LEN: usize = 4_096;
-/// Bytes of the longest event: its kind and the request to create a device.
-const EVENT_LEN: usize = 4 + 128 + 64 + 64 + 2 + 2 + 4 * 4 + DATA_LEN;
-const BUS_USB: u16 = 3;
+use crate::uhid::{Bus, Told, Uhid};
 
 /// How long the kernel may take to make a device.
 const DEVICE_LIMIT_MS: u64 = 5_000;
 
 /// A pad without noise, 0.01 µV per count, that answers the question who it is.
 pub(crate) struct HidPad {
-    uhid: File,
+    uhid: Uhid,
     serial_number: String,
     sequence: u32,
     started_ns: u64,
@@ -46,23 +33,15 @@ pub(crate) struct HidPad {
 impl HidPad {
     /// Plugs a pad in.
     pub(crate) fn plug_in(serial_number: &str) -> Self {
-        let uhid = OpenOptions::new().read(true).write(true).open("/dev/uhid").expect("uhid");
-        let mut pad =
-            Self { uhid, serial_number: serial_number.into(), sequence: 0, started_ns: monotonic_ns() };
-        let mut event = Vec::with_capacity(EVENT_LEN);
-        event.extend(UHID_CREATE2.to_ne_bytes());
-        for (text, length) in [("tactpad test pad", 128), ("test/0", 64), (serial_number, 64)] {
-            event.extend(text.bytes().chain(std::iter::repeat(0)).take(length));
-        }
-        let length = u16::try_from(hid::REPORT_DESCRIPTOR.len()).expect("a short descriptor");
-        event.extend(length.to_ne_bytes());
-        event.extend(BUS_USB.to_ne_bytes());
-        for number in [u32::from(hid::VENDOR_ID), u32::from(hid::PRODUCT_ID), 1, 0] {
-            event.extend(number.to_ne_bytes());
-        }
-        event.extend(hid::REPORT_DESCRIPTOR);
-        event.resize(EVENT_LEN, 0);
-        pad.uhid.write_all(&event).expect("a HID device");
+        let uhid = Uhid::plug_in(&Told {
+            name: "tactpad test pad",
+            serial_number,
+            bus: Bus::Usb,
+            vendor: hid::VENDOR_ID,
+            product: hid::PRODUCT_ID,
+            descriptor: hid::REPORT_DESCRIPTOR,
+        });
+        let pad = Self { uhid, serial_number: serial_number.into(), sequence: 0, started_ns: monotonic_ns() };
         pad.wait_until_known();
         pad
     }
@@ -88,9 +67,9 @@ impl HidPad {
     }
 
     /// Pulls the plug; returns the stamp of that moment.
-    pub(crate) fn unplug(mut self) -> u64 {
+    pub(crate) fn unplug(self) -> u64 {
         let stamp = stamp_ns();
-        self.uhid.write_all(&UHID_DESTROY.to_ne_bytes()).expect("the device goes");
+        self.uhid.unplug();
         stamp
     }
 
@@ -122,22 +101,13 @@ impl HidPad {
     }
 
     fn send(&mut self, message: &Message) {
-        let report = hid::encode_message(message);
-        let mut event = Vec::with_capacity(6 + report.len());
-        event.extend(UHID_INPUT2.to_ne_bytes());
-        event.extend(u16::try_from(report.len()).expect("a short report").to_ne_bytes());
-        event.extend(report);
-        self.uhid.write_all(&event).expect("a report");
+        self.uhid.report(&hid::encode_message(message));
     }
 
     fn answer_until(&mut self, until_ns: u64) {
-        while readable_before(until_ns, self.uhid.as_fd()) {
-            let mut event = [0; EVENT_LEN];
-            let length = self.uhid.read(&mut event).expect("an event");
-            let (kind, rest) = event[..length].split_at(4);
-            if kind == UHID_OUTPUT.to_ne_bytes()
-                && hid::decode_command(&rest[..hid::REPORT_LEN]) == Ok(Command::Identify)
-            {
+        while readable_before(until_ns, self.uhid.fd()) {
+            let command = self.uhid.hear().map(|report| hid::decode_command(&report));
+            if command == Some(Ok(Command::Identify)) {
                 let identity = Identity {
                     serial_number: SerialNumber::from_ascii(&self.serial_number).expect("a short name"),
                     channels: 9,

@@ -11,6 +11,7 @@
     reason = "a test fails by panicking and shows what it saw"
 )]
 
+mod balance_board;
 mod bridge;
 #[path = "../support/clock.rs"]
 mod clock;
@@ -35,6 +36,8 @@ mod sdl;
 mod supertux;
 #[path = "../support/mod.rs"]
 mod support;
+mod uhid;
+mod wiimote;
 mod wire;
 
 use firmware_proto::frame::Message;
@@ -140,6 +143,32 @@ fn a_cap_of_six_axes_plays() {
 #[test]
 fn a_board_of_four_cells_plays() {
     in_guest("a_board_of_four_cells_plays", owned_pads::board);
+}
+
+#[test]
+fn hands_on_a_balance_board_play_by_the_real_driver() {
+    in_guest("hands_on_a_balance_board_play_by_the_real_driver", balance_board::seated);
+}
+
+#[test]
+fn hands_on_a_balance_board_play_by_the_real_drivers_axes_alone() {
+    in_guest(
+        "hands_on_a_balance_board_play_by_the_real_drivers_axes_alone",
+        balance_board::by_the_driver_alone,
+    );
+}
+
+#[test]
+fn who_stands_on_a_balance_board_plays_by_the_real_driver() {
+    in_guest("who_stands_on_a_balance_board_plays_by_the_real_driver", balance_board::standing);
+}
+
+#[test]
+fn a_balance_board_that_may_not_be_read_is_told_of_and_plays_as_far_as_it_can() {
+    in_guest(
+        "a_balance_board_that_may_not_be_read_is_told_of_and_plays_as_far_as_it_can",
+        balance_board::access,
+    );
 }
 
 #[test]

@@ -177,11 +177,11 @@ impl Device {
     }
 }
 
-fn pause(ms: u64) {
+pub(crate) fn pause(ms: u64) {
     wait_until(monotonic_ns() + ms * MS);
 }
 
-fn comes_true(what: &str, mut holds: impl FnMut() -> bool) {
+pub(crate) fn comes_true(what: &str, mut holds: impl FnMut() -> bool) {
     let limit_ns = monotonic_ns() + LIMIT_MS * MS;
     while !holds() {
         assert!(monotonic_ns() < limit_ns, "{what}: not within {LIMIT_MS} ms");
@@ -214,7 +214,7 @@ fn status() -> String {
     String::from_utf8(output.expect("ctl runs").stdout).expect("text")
 }
 
-fn devices() -> String {
+pub(crate) fn devices() -> String {
     let output = std::process::Command::new(TACTPAD).args(["devices", "--json"]).output();
     String::from_utf8(output.expect("devices runs").stdout).expect("text")
 }

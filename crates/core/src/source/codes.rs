@@ -21,6 +21,15 @@ pub const MT_FIRST: u16 = 0x30;
 /// A finger comes, or goes with -1.
 pub const MT_TRACKING_ID: u16 = 0x39;
 
+/// Two axes each of the first two hats. A Balance Board has its cells there.
+pub const ABS_HAT0X: u16 = 0x10;
+/// See [`ABS_HAT0X`].
+pub const ABS_HAT0Y: u16 = 0x11;
+/// See [`ABS_HAT0X`].
+pub const ABS_HAT1X: u16 = 0x12;
+/// See [`ABS_HAT0X`].
+pub const ABS_HAT1Y: u16 = 0x13;
+
 /// Axes by name.
 pub const AXES: [(&str, u16); 20] = [
     ("ABS_X", 0x00),
@@ -29,10 +38,10 @@ pub const AXES: [(&str, u16); 20] = [
     ("ABS_RX", 0x03),
     ("ABS_RY", 0x04),
     ("ABS_RZ", 0x05),
-    ("ABS_HAT0X", 0x10),
-    ("ABS_HAT0Y", 0x11),
-    ("ABS_HAT1X", 0x12),
-    ("ABS_HAT1Y", 0x13),
+    ("ABS_HAT0X", ABS_HAT0X),
+    ("ABS_HAT0Y", ABS_HAT0Y),
+    ("ABS_HAT1X", ABS_HAT1X),
+    ("ABS_HAT1Y", ABS_HAT1Y),
     ("ABS_HAT2X", 0x14),
     ("ABS_HAT2Y", 0x15),
     ("ABS_HAT3X", 0x16),

@@ -53,6 +53,16 @@ pub struct Evdev {
     pub silent_ms: Option<u32>,
     /// The axes that are the channels; none where it reports contacts.
     pub channels: Vec<u16>,
+    /// What the device's own reports are, which are read beside its driver where the system allows that; `None` where the driver's
+    /// axes say all.
+    pub reports: Option<Reports>,
+}
+
+/// Reports of a device that say more than its driver makes of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reports {
+    /// Of the Wii Balance Board: what its cells read also below their own zero.
+    BalanceBoard,
 }
 
 /// Lines of text: numbers between commas, semicolons or blanks.

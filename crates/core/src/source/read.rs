@@ -5,7 +5,7 @@
 use toml::de::DeTable;
 
 use super::codes::{self, CODES, InputCode};
-use super::{AXES, Cell, Evdev, Lines, Measures, Origin, Reach, Source, Touching, Wrench};
+use super::{AXES, Cell, Evdev, Lines, Measures, Origin, Reach, Reports, Source, Touching, Wrench};
 use crate::quantity::WEIGHT_N_PER_G;
 use crate::toml_text;
 use crate::toml_text::diag::{Diagnostic, Findings};
@@ -13,7 +13,7 @@ use crate::toml_text::section::{Bounds, Placed, Section};
 
 const ROOT_KEYS: [&str; 11] =
     ["schema", "name", "title", "lines", "wire", "evdev", "area", "force", "cell", "wrench", "contact"];
-const EVDEV_KEYS: [&str; 6] = ["names", "has", "lacks", "grab", "silent_ms", "channels"];
+const EVDEV_KEYS: [&str; 7] = ["names", "has", "lacks", "grab", "silent_ms", "channels", "reports"];
 const CONTACT_KEYS: [&str; 6] = ["x", "y", "force", "full_share", "full_n", "touch_n"];
 const LINES_KEYS: [&str; 3] = ["baud", "columns", "decimals"];
 const AREA_KEYS: [&str; 2] = ["half_width_mm", "half_height_mm"];
@@ -84,6 +84,9 @@ const MOMENT_UNITS: [(&str, MomentUnit); 3] = [
     ("Nm", MomentUnit::NewtonMillimetres(1e3)),
     ("count", MomentUnit::Count),
 ];
+
+/// Reports that are read beside a driver.
+const REPORTS: [(&str, Reports); 1] = [("balance-board", Reports::BalanceBoard)];
 
 /// Whether a text is meant as a description, sound or not: it has a table that says where numbers come from.
 pub fn is_meant(text: &str) -> bool {
@@ -327,6 +330,14 @@ fn read_evdev(table: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Fin
             axes.map(|axes| axes.iter().map(|axis| axis.value).collect::<Vec<_>>())
         }
     };
+    let reports = table.word("reports", &REPORTS, findings);
+    if reports.is_none() && table.place_of("reports").is_some() {
+        return None;
+    }
+    if let (0, Some(reports)) = (wanted, reports) {
+        let help = "take it out: a device that tells contacts has none that are known";
+        findings.error(reports.at, "\"reports\" are for load cells", help);
+    }
     let evdev = Evdev {
         names: names?,
         has: has?,
@@ -334,6 +345,7 @@ fn read_evdev(table: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Fin
         grabs: grabs?,
         silent_ms: silent_ms?,
         channels: channels?,
+        reports: reports.map(|reports| reports.value),
     };
     if evdev.names.is_empty() && evdev.has.is_empty() {
         let help =
@@ -558,6 +570,7 @@ mod tests {
         };
         assert_eq!(listed("axis"), read(&codes::AXES.map(|(name, _)| name)));
         assert_eq!(listed("code"), read(&CODES.map(|(name, _)| name)));
+        assert_eq!(listed("reports"), read(&REPORTS.map(|(name, _)| name)));
     }
 
     #[test]
@@ -682,6 +695,26 @@ mod tests {
         };
         assert_eq!((&seated.origin, cells), (&standing.origin, same_cells));
         assert_eq!(Reach { standing_n: Some(2.0), ..*reach }, *same_reach);
+    }
+
+    #[test]
+    fn reports_beside_the_driver_are_those_that_are_known_and_of_cells() {
+        let text = shipped::text("balance-board").unwrap();
+        let reports = |text: &str| match read(text).0.map(|source| source.origin) {
+            Some(Origin::Evdev(evdev)) => evdev.reports,
+            _ => None,
+        };
+        let key = "reports = \"balance-board\"\n";
+        assert_eq!(reports(text), Some(Reports::BalanceBoard));
+        assert_eq!(reports(&text.replace(key, "")), None);
+        let wrong = messages(&text.replace(key, "reports = \"skateboard\"\n"));
+        assert!(
+            matches!(&wrong[..], [one] if one.ends_with("\"reports\" cannot be \"skateboard\"")),
+            "{wrong:?}"
+        );
+        let tablet = shipped::text("tablet").unwrap();
+        let wrong = messages(&tablet.replace("grab = true\n", &format!("grab = true\n{key}")));
+        assert!(matches!(&wrong[..], [one] if one.ends_with("\"reports\" are for load cells")), "{wrong:?}");
     }
 
     #[test]

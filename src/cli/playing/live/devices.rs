@@ -1,16 +1,19 @@
 //! `tactpad devices`: what is attached.
 
 use std::io::{self, Write};
+use std::path::Path;
 
 use clap::Args;
 use serde::Serialize;
 
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{print_json, printable, stdout};
+use tactpad::bridge::transport::evdev::battery::Battery;
+use tactpad::bridge::transport::evdev::beside::raw_node;
 use tactpad::bridge::transport::evdev::found::{self, FoundDevice, reading_command};
 use tactpad::bridge::transport::pads::{Attachment, FoundPad, attached, usb_serial_ports};
 use tactpad::source::read::read;
-use tactpad::source::{Origin, Source, shipped};
+use tactpad::source::{Evdev, Origin, Source, shipped};
 
 /// Arguments of `tactpad devices`.
 #[derive(Debug, Args)]
@@ -31,7 +34,7 @@ struct Listed {
 }
 
 /// An input device that fits a description inside the program.
-#[derive(Debug, PartialEq, Eq, Serialize)]
+#[derive(Debug, PartialEq, Serialize)]
 pub(super) struct ListedDevice {
     pub(super) address: String,
     pub(super) path: String,
@@ -41,6 +44,31 @@ pub(super) struct ListedDevice {
     pub(super) source: String,
     /// Whether this user may read it.
     pub(super) is_readable: bool,
+    /// Where its own reports come, if the description takes them and this user may not read them.
+    pub(super) unreadable_reports: Option<String>,
+    pub(super) battery: Option<Battery>,
+}
+
+impl ListedDevice {
+    /// The command that lets this user read all of it; `None` where that is so.
+    pub(super) fn mend(&self) -> Option<String> {
+        let device = (!self.is_readable).then_some(&self.path);
+        let nodes: Vec<&Path> = device.into_iter().chain(&self.unreadable_reports).map(Path::new).collect();
+        (!nodes.is_empty()).then(|| reading_command(&nodes))
+    }
+
+    /// What this user cannot have of it as it is; `None` where nothing is missing.
+    pub(super) fn lack(&self) -> Option<&'static str> {
+        if !self.is_readable {
+            Some("may not be read by you")
+        } else if self.unreadable_reports.is_some() {
+            Some(
+                "plays without what only its own reports tell, which may not be read by you: what lies on a cell below that cell's zero",
+            )
+        } else {
+            None
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -76,21 +104,27 @@ pub(super) fn input_devices() -> Vec<ListedDevice> {
     let mut devices: Vec<ListedDevice> = Vec::new();
     for source in named.iter().chain(&others) {
         devices.extend(
-            found.extract_if(.., |device| device.fits(source)).map(|device| listed_device(&device, source)),
+            found
+                .extract_if(.., |device| device.fits(source))
+                .filter_map(|device| listed_device(&device, source)),
         );
     }
     devices
 }
 
-fn listed_device(device: &FoundDevice, source: &Source) -> ListedDevice {
+fn listed_device(device: &FoundDevice, source: &Source) -> Option<ListedDevice> {
     let path = device.path.display().to_string();
-    ListedDevice {
+    let Origin::Evdev(Evdev { reports, .. }) = source.origin else { return None };
+    let raw = reports.and_then(|_| raw_node(&device.path)).filter(|raw| !raw.is_readable);
+    Some(ListedDevice {
         address: format!("{}:{path}", source.name),
         path,
         name: device.name.clone(),
         source: source.name.clone(),
         is_readable: device.is_readable(),
-    }
+        unreadable_reports: raw.map(|raw| raw.path.display().to_string()),
+        battery: Battery::of(&device.path, reports),
+    })
 }
 
 fn listed(found: &[FoundPad]) -> Vec<Listed> {
@@ -126,12 +160,10 @@ fn print(report: &DevicesReport) -> io::Result<()> {
     }
     for device in &report.input_devices {
         let (address, name) = (printable(&device.address), printable(&device.name));
-        if device.is_readable {
-            writeln!(out, "input --pad {address}   ({name})")?;
-        } else {
-            let command = reading_command(device.path.as_ref());
-            writeln!(out, "input --pad {address}   ({name}; may not be read by you: {command})")?;
-        }
+        let battery = device.battery.map(|battery| format!("; {battery}")).unwrap_or_default();
+        let lack = device.lack().zip(device.mend());
+        let lack = lack.map(|(lack, mend)| format!("; {lack}: {mend}")).unwrap_or_default();
+        writeln!(out, "input --pad {address}   ({name}{battery}{lack})")?;
     }
     for port in &report.serial_ports {
         let place = report.usb_ports.iter().find(|usb| usb.path == *port).map(at).unwrap_or_default();

@@ -17,7 +17,6 @@ use crate::cli::printing::written::{print_json, printable, stdout};
 use tactpad::bridge::control::ask;
 use tactpad::bridge::sink::uinput;
 use tactpad::bridge::sink::x11::LeftDown;
-use tactpad::bridge::transport::evdev::found::reading_command;
 use tactpad::bridge::transport::pads::{self, FoundPad};
 
 /// The rules that give the player access; a test holds their number below that of the seat's.
@@ -115,26 +114,36 @@ pub(super) fn examine() -> DoctorReport {
     DoctorReport { ok: checks.iter().all(|check| check.finding != Finding::Bad), checks }
 }
 
-/// Input devices that can be played with, and whether they may be read.
+/// Input devices that can be played with, whether they may be read, and whether their batteries will last.
 fn check_input_devices(fitting: &[ListedDevice]) -> Vec<Check> {
     let check = |device: &ListedDevice| {
-        let name = "input device";
-        if device.is_readable {
-            return Check::good(
-                name,
+        let what = printable(&format!("{}, which fits {},", device.name, device.source));
+        match (device.lack(), device.mend()) {
+            (Some(lack), mend) => Check {
+                mend,
+                ..Check::note("input device", format!("{what} {lack}; until it is unplugged this lets you"))
+            },
+            (None, _) => Check::good(
+                "input device",
                 printable(&format!("{} plays with --pad {}", device.name, device.address)),
-            );
-        }
-        let what = printable(&format!("{}, which fits {}", device.name, device.source));
-        Check {
-            mend: Some(reading_command(device.path.as_ref())),
-            ..Check::note(
-                name,
-                format!("{what}, may not be read by you; until it is unplugged this lets you"),
-            )
+            ),
         }
     };
-    fitting.iter().map(check).collect()
+    fitting.iter().flat_map(|device| [Some(check(device)), check_battery(device)]).flatten().collect()
+}
+
+/// The battery of an input device, if it has one that says how it is.
+fn check_battery(device: &ListedDevice) -> Option<Check> {
+    let (name, battery) = ("battery", device.battery?);
+    let message = printable(&format!("{} has its {battery}", device.name));
+    Some(if battery.is_low() {
+        Check::note(
+            name,
+            format!("{message}, which is low: put fresh ones in before the device leaves the game"),
+        )
+    } else {
+        Check::good(name, message)
+    })
 }
 
 fn print(report: &DoctorReport) -> io::Result<()> {
@@ -357,25 +366,50 @@ fn bridge_message(status: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use tactpad::bridge::transport::evdev::battery::Battery;
+
     use super::*;
 
     #[test]
     fn input_devices_that_play_are_named_and_hidden_ones_are_told_of() {
-        let device = |is_readable: bool| ListedDevice {
+        let device = |is_readable: bool, unreadable_reports: Option<&str>| ListedDevice {
             address: "tablet:/dev/input/event5".into(),
             path: "/dev/input/event5".into(),
             name: "Pen".into(),
             source: "tablet".into(),
             is_readable,
+            unreadable_reports: unreadable_reports.map(str::to_owned),
+            battery: None,
         };
-        let checks = check_input_devices(&[device(true), device(false)]);
-        assert_eq!(checks[0].message, "Pen plays with --pad tablet:/dev/input/event5");
-        assert_eq!(
-            checks[1].message,
-            "Pen, which fits tablet, may not be read by you; until it is unplugged this lets you"
-        );
-        assert_eq!(checks[1].mend.as_deref(), Some("sudo setfacl -m u:$USER:r /dev/input/event5"));
+        let raw = Some("/dev/hidraw3");
+        let checks = check_input_devices(&[
+            device(true, None),
+            device(false, None),
+            device(true, raw),
+            device(false, raw),
+        ]);
+        let told: Vec<_> = checks.iter().map(|check| check.message.as_str()).collect();
+        assert_eq!(told[0], "Pen plays with --pad tablet:/dev/input/event5");
+        let hidden = "Pen, which fits tablet, may not be read by you; until it is unplugged this lets you";
+        assert_eq!([told[1], told[3]], [hidden; 2]);
+        assert!(told[2].contains("its own reports"), "{}", told[2]);
+        let mends: Vec<_> = checks.iter().map(|check| check.mend.as_deref()).collect();
+        let command = |nodes: &str| Some(format!("sudo setfacl -m u:$USER:r {nodes}"));
+        let wanted = [
+            None,
+            command("/dev/input/event5"),
+            command("/dev/hidraw3"),
+            command("/dev/input/event5 /dev/hidraw3"),
+        ];
+        assert_eq!(mends, wanted.each_ref().map(Option::as_deref));
         assert_eq!(check_input_devices(&[]), []);
+        let found = |battery| {
+            let checks =
+                check_input_devices(&[ListedDevice { battery: Some(battery), ..device(true, None) }]);
+            checks.into_iter().map(|check| (check.name, check.finding)).collect::<Vec<_>>()
+        };
+        assert_eq!(found(Battery::Volts(5.2))[1], ("battery", Finding::Good));
+        assert_eq!(found(Battery::Percent(9))[1], ("battery", Finding::Note));
     }
 
     #[test]
@@ -394,7 +428,7 @@ mod tests {
     fn the_shipped_rules_come_before_the_seats() {
         let file = Path::new(RULES_FILE).file_name().unwrap().to_str().unwrap();
         assert!(number(file).unwrap() < SEAT_NUMBER);
-        assert_eq!(RULES.matches("TAG+=\"uaccess\"").count(), 3);
+        assert_eq!(RULES.matches("TAG+=\"uaccess\"").count(), 4);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use tactpad_core::source::codes::{BTN_TOUCH, InputCode, MT_FIRST, MT_SLOT, MT_TR
 use tactpad_core::source::{Evdev, Measures, Origin, Source};
 
 /// Where the kernel lists input devices.
-const CLASS: &str = "/sys/class/input";
+pub(super) const CLASS: &str = "/sys/class/input";
 
 /// An input device, by what it tells of itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -47,9 +47,10 @@ pub fn attached(names: &[String]) -> Vec<FoundDevice> {
     found
 }
 
-/// The command that lets a user read a node.
-pub fn reading_command(path: &Path) -> String {
-    format!("sudo setfacl -m u:$USER:r {}", path.display())
+/// The command that lets a user read these nodes.
+pub fn reading_command(paths: &[&Path]) -> String {
+    let list: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    format!("sudo setfacl -m u:$USER:r {}", list.join(" "))
 }
 
 impl FoundDevice {

@@ -1,7 +1,11 @@
 //! A pad that is an input device of the system: its events become frames here, so that everything behind hears one language.
 
+mod balance_board;
+pub mod battery;
+pub mod beside;
 pub mod found;
 mod frames;
+mod reports;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
@@ -16,13 +20,14 @@ use rustix::fs::{Mode, OFlags};
 use rustix::time::{
     Itimerspec, TimerfdClockId, TimerfdFlags, TimerfdTimerFlags, timerfd_create, timerfd_settime,
 };
-use tactpad_core::source::{Evdev, Origin, Source};
+use tactpad_core::source::{Evdev, Origin, Reports, Source};
 
 use super::Transport;
 use super::opener::PadError;
 use super::pacing::{is_readable, limit, monotonic_us};
 use found::{FoundDevice, attached, reading_command};
 use frames::{AxisRange, Change, EvdevFrames};
+use reports::{Heard, ReportReader};
 
 /// Reads at once after events were lost: more than the kernel's queue of a device holds.
 const DRAIN_READS_MAX: usize = 64;
@@ -37,6 +42,8 @@ const NEVER: u64 = 0;
 /// An open input device.
 pub struct EvdevPort {
     device: RawDevice,
+    /// The device's own reports, which say what its axes would say if they said all.
+    reports: Option<ReportReader>,
     frames: EvdevFrames,
     /// Whether it is taken from the desktop while it plays.
     grabs: bool,
@@ -87,7 +94,8 @@ impl EvdevOpener {
         if !found.fits(&self.source) {
             return Err(PadError::Unusable(self.is_another(&found)));
         }
-        let port = EvdevPort::new(device, &self.source, wanted, self.grabs);
+        let reports = wanted.reports.and_then(|Reports::BalanceBoard| ReportReader::open(&path));
+        let port = EvdevPort::new(device, reports, &self.source, wanted, self.grabs);
         match port {
             Ok(port) => {
                 // A link that is named, as those in /dev/input/by-id, says by itself which device is meant.
@@ -155,7 +163,7 @@ fn open_device(path: &Path) -> io::Result<RawDevice> {
 }
 
 fn open_error(path: &Path, error: &io::Error) -> PadError {
-    let (path, command) = (path.display(), reading_command(path));
+    let (path, command) = (path.display(), reading_command(&[path]));
     match error.kind() {
         io::ErrorKind::NotFound => PadError::NotThere(format!("{path} is gone: plug the device in")),
         io::ErrorKind::PermissionDenied => PadError::Denied(format!(
@@ -171,15 +179,23 @@ fn open_error(path: &Path, error: &io::Error) -> PadError {
 }
 
 impl EvdevPort {
-    fn new(device: RawDevice, source: &Source, wanted: &Evdev, grabs: bool) -> io::Result<Self> {
+    fn new(
+        device: RawDevice,
+        reports: Option<ReportReader>,
+        source: &Source,
+        wanted: &Evdev,
+        grabs: bool,
+    ) -> io::Result<Self> {
         let either = epoll::create(epoll::CreateFlags::CLOEXEC)?;
         let timer =
             timerfd_create(TimerfdClockId::Monotonic, TimerfdFlags::CLOEXEC | TimerfdFlags::NONBLOCK)?;
-        for fd in [device.as_fd(), timer.as_fd()] {
+        let of_reports = reports.iter().flat_map(ReportReader::fds);
+        for fd in [device.as_fd(), timer.as_fd()].into_iter().chain(of_reports) {
             epoll::add(&either, fd, epoll::EventData::new_u64(0), epoll::EventFlags::IN)?;
         }
         let mut port = Self {
             device,
+            reports,
             frames: EvdevFrames::new(source, wanted),
             grabs,
             is_lost: true,
@@ -214,12 +230,14 @@ impl EvdevPort {
         if !self.is_gone {
             self.is_gone = true;
             // One that is gone is readable for ever.
+            self.reports = None;
             epoll::delete(&self.either, self.device.as_fd())?;
         }
         self.set_timer()
     }
 
     fn hear(&mut self, now_us: u64) -> io::Result<()> {
+        self.hear_reports(now_us)?;
         if !self.is_lost && is_readable(self.device.as_fd())? {
             for event in available(&mut self.device)? {
                 match change(event) {
@@ -227,6 +245,7 @@ impl EvdevPort {
                         self.is_lost = true;
                         break;
                     }
+                    Some(Change::Axis(..) | Change::End) if self.reports.is_some() => {}
                     Some(change) => self.frames.take(now_us, change, &mut self.out),
                     None => {}
                 }
@@ -237,11 +256,33 @@ impl EvdevPort {
         }
         if self.is_lost {
             self.synchronize()?;
-            if !self.is_lost {
+            if !self.is_lost && !self.is_unheard() {
                 self.frames.take(now_us, Change::End, &mut self.out);
             }
         }
         self.grab_if_untouched()
+    }
+
+    /// Takes what the device's own reports say by `now_us`. Where they say nothing that can be used, its axes are taken.
+    fn hear_reports(&mut self, now_us: u64) -> io::Result<()> {
+        match self.reports.as_mut().map(ReportReader::hear).transpose()? {
+            Some(Heard::Axes(axes)) => {
+                let changes = axes.map(|(axis, value)| Change::Axis(axis, value));
+                let state = changes.into_iter().chain([Change::End]);
+                state.for_each(|change| self.frames.take(now_us, change, &mut self.out));
+            }
+            Some(Heard::Unknown) => {
+                self.reports = None;
+                self.is_lost = true;
+            }
+            Some(Heard::Nothing) | None => {}
+        }
+        Ok(())
+    }
+
+    /// Whether nothing may be sent before the device's next report.
+    fn is_unheard(&self) -> bool {
+        self.reports.as_ref().is_some_and(ReportReader::is_unheard)
     }
 
     /// Takes the device from the desktop, if that is wanted and nothing on it is down.
@@ -266,6 +307,7 @@ impl EvdevPort {
             // Reports that came meanwhile may be older than what was asked.
             if !is_readable(self.device.as_fd())? {
                 self.frames.set_state(down, ranges);
+                self.reports.iter_mut().for_each(ReportReader::forget);
                 self.is_lost = false;
                 break;
             }
@@ -290,7 +332,8 @@ impl EvdevPort {
     /// Lets the descriptor poll readable when the state is to be sent again, or at once if more is to be done.
     fn set_timer(&self) -> io::Result<()> {
         let is_more = !self.out.is_empty() || self.is_gone || self.is_lost;
-        let due_us = self.frames.due_us().map_or(NEVER, |due_us| self.origin_us + due_us);
+        let due_us = self.frames.due_us().filter(|_| !self.is_unheard());
+        let due_us = due_us.map_or(NEVER, |due_us| self.origin_us + due_us);
         let due_us = if is_more { 1 } else { due_us };
         let timer = Itimerspec { it_interval: limit(0), it_value: limit(due_us) };
         timerfd_settime(&self.timer, TimerfdTimerFlags::ABSTIME, &timer)?;
@@ -330,7 +373,7 @@ impl Transport for EvdevPort {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         let now_us = monotonic_us().saturating_sub(self.origin_us);
         self.take(now_us)?;
-        if !self.is_gone && !self.is_lost {
+        if !self.is_gone && !self.is_lost && !self.is_unheard() {
             self.frames.repeat(now_us, &mut self.out);
         }
         let count = self.out.len().min(bytes.len());

@@ -6,8 +6,9 @@ use std::path::Path;
 use tactpad::numeric::statistics::{deviation, mean};
 
 use crate::desk::{Desk, pause_ms};
+use crate::hand::{ORDINARY, Style};
 use crate::heard::labels;
-use crate::player::{ORDINARY, Player, Style};
+use crate::player::Player;
 use crate::segment::Segment;
 use crate::trial::{Bridge, Game, Outcome, Recorded, Way, play, tactpad};
 
@@ -39,7 +40,7 @@ impl Trials {
         mispresses as f64 / (self.0.len() as f64 * segment.length_ms() as f64 / 60_000.0)
     }
 
-    fn row(&self, name: &str, segment: &Segment) -> String {
+    pub(crate) fn row(&self, name: &str, segment: &Segment) -> String {
         let [mean_s, deviation_s] = self.time_s();
         let (reached, count, each) = (self.reached(), self.0.len(), self.mispresses_per_minute(segment));
         let time = if reached == 0 { "–".into() } else { format!("{mean_s:.2} ± {deviation_s:.2}") };
@@ -48,12 +49,15 @@ impl Trials {
 }
 
 /// The head of the tables that are printed.
-const HEAD: &str = "| player | succeeded | time, s | mis-presses per minute |\n|---|---|---|---|";
+pub(crate) const HEAD: &str = "| player | succeeded | time, s | mis-presses per minute |\n|---|---|---|---|";
 
 impl Played<'_> {
-    fn trial(&self, trials: &mut Trials, way: Way<'_>) {
+    pub(crate) fn trial(&self, trials: &mut Trials, way: Way<'_>) {
         let outcome = play((self.start)().as_mut(), self.segment, way);
         println!("{way}: {outcome}");
+        if outcome.reached_s.is_err() {
+            println!("  {}", outcome.events.join(", "));
+        }
         trials.0.push(outcome);
     }
 
@@ -98,7 +102,7 @@ impl Played<'_> {
     /// Records a player's warm-up, without a game, and lets `tune` fit the profile to it; the new profile's file.
     fn tuned(&self, style: Style, seed: u64, folder: &Path) -> String {
         let desk = Desk::new(320, 240);
-        let bridge = Bridge::start(&desk, Player::new(style, seed), self.profile);
+        let bridge = Bridge::start(&desk, Player::on_twin(style, seed), self.profile);
         let round_ms = self.segment.length_ms() + BETWEEN_MS;
         let warm_up = Segment((0..ROUNDS).flat_map(|round| self.segment.after(round * round_ms).0).collect());
         bridge.player.play(&warm_up);

@@ -24,20 +24,38 @@ pub(crate) fn labels(capture: &Path, segment: &Segment, begun_us: u64) -> String
     segment.labels(begun_us - first_sample_us(capture))
 }
 
-/// Things meant that did not come down as they were meant, and things that came down unasked; none where nothing was meant.
-pub(crate) fn mispresses(capture: &Path, segment: &Segment, begun_us: u64, profile: &Profile) -> usize {
-    if !segment.means_something() {
-        return 0;
+/// What a recording came to with a profile.
+pub(crate) struct Heard {
+    /// Things meant that did not come down as they were meant, and things that came down unasked; none where nothing was meant.
+    pub(crate) mispresses: usize,
+    /// What went down and up when, in ms since the segment's begin.
+    pub(crate) events: Vec<String>,
+}
+
+impl Heard {
+    /// In a recording of a segment that began at `begun_us` by the pad's clock.
+    pub(crate) fn of(capture: &Path, segment: &Segment, begun_us: u64, profile: &Profile) -> Self {
+        let mut reader = open(capture);
+        let mut tracer = Tracer::new(reader.head().read_decoder().unwrap(), profile.clone());
+        while let Some(call) = reader.next_call() {
+            let (now, call) = call.unwrap();
+            tracer.apply(now, call);
+        }
+        let trace = tracer.finish();
+        let mut events = Vec::new();
+        let begin_us = begun_us - first_sample_us(capture);
+        trace.play(profile, |event| {
+            let at_ms = (event.at.as_us() as f64 - begin_us as f64) * 1e-3;
+            events.push(format!("{at_ms:.0} {} {}", event.code, event.value));
+        });
+        let mut mispresses = 0;
+        if segment.means_something() {
+            let labels = Labels::read(&labels(capture, segment, begun_us), profile).unwrap();
+            let score = Score::of(profile, &trace, &labels, AFTER_US);
+            mispresses = labels.labels().len() - score.correct() + score.strays();
+        }
+        Self { mispresses, events }
     }
-    let labels = Labels::read(&labels(capture, segment, begun_us), profile).unwrap();
-    let mut reader = open(capture);
-    let mut tracer = Tracer::new(reader.head().read_decoder().unwrap(), profile.clone());
-    while let Some(call) = reader.next_call() {
-        let (now, call) = call.unwrap();
-        tracer.apply(now, call);
-    }
-    let score = Score::of(profile, &tracer.finish(), &labels, AFTER_US);
-    labels.labels().len() - score.correct() + score.strays()
 }
 
 /// The pad's time of the first sample that was heard.
@@ -47,8 +65,11 @@ fn first_sample_us(capture: &Path) -> u64 {
     while let Some(call) = reader.next_call() {
         let Call::Bytes(bytes) = call.unwrap().1 else { continue };
         for byte in bytes {
-            if let Some(Ok(Message::Sample(sample))) = receiver.push(*byte) {
-                return sample.time_us;
+            match receiver.push(*byte) {
+                Some(Ok(Message::Sample(sample))) => return sample.time_us,
+                Some(Ok(Message::Channels(sample))) => return sample.time_us,
+                Some(Ok(Message::Contact(sample))) => return sample.time_us,
+                _ => {}
             }
         }
     }

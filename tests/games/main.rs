@@ -16,7 +16,10 @@ mod digits;
 mod framebuffer;
 #[path = "../kernel/guest.rs"]
 mod guest;
+mod hand;
 mod heard;
+mod owned;
+mod pads;
 mod pictures;
 mod player;
 mod reaction;
@@ -34,7 +37,7 @@ use std::sync::{Mutex, PoisonError};
 
 use block::Played;
 use guest::in_guest;
-use player::{ORDINARY, Style};
+use hand::{ORDINARY, Style};
 use reaction::Times;
 use segment::Segment;
 use supertux::SuperTux;

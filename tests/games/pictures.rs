@@ -4,7 +4,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::desk::{Desk, Process, pause_ms};
-use crate::player::{ORDINARY, Player};
+use crate::hand::ORDINARY;
+use crate::player::Player;
 use crate::segment::Segment;
 use crate::trial::{Bridge, Game, watch};
 
@@ -34,7 +35,7 @@ pub(crate) fn record<G: Game>(
     profile: &str,
     folder: &Path,
 ) {
-    let bridge = Bridge::start_as(&desk, Player::new(ORDINARY, SEED), profile, &["run", "--dashboard"]);
+    let bridge = Bridge::start_as(&desk, Player::on_twin(ORDINARY, SEED), profile, &["run", "--dashboard"]);
     let _page = browser(&desk, bridge.ctl(&["dashboard"]).trim());
     pause_ms(PAGE_MS);
     let [film, still] = ["webp", "png"].map(|kind| folder.join(format!("{profile}.{kind}")));

@@ -10,7 +10,8 @@ use tactpad::time::StreamInstant;
 use crate::clock::{MS, monotonic_ns, wait_until};
 use crate::desk::{Desk, await_some, pause_ms};
 use crate::framebuffer::Area;
-use crate::player::{EXACT, Player};
+use crate::hand::EXACT;
+use crate::player::{Player, thumb_script};
 use crate::segment::Segment;
 use crate::trial::{Bridge, Game, profile_of};
 
@@ -133,10 +134,13 @@ struct Presser {
 
 impl Presser {
     fn new(game: &dyn Jumper, profile: &str) -> Self {
-        let bridge = Bridge::start(game.desk(), Player::new(EXACT, SEED), profile);
+        let bridge = Bridge::start(game.desk(), Player::on_twin(EXACT, SEED), profile);
         let press = Segment::default().tap(game.jump().meant, 0, PRESS_MS);
         let threshold_n = profile_of(profile).buttons[0].press_n;
-        let passes_us = bridge.player.passes_us(&press, threshold_n).expect("it presses hard enough");
+        let script = thumb_script(EXACT, &press, SEED);
+        let mut times_us = (0..1_000 * press.length_ms()).step_by(100);
+        let passes_us = times_us.find(|at_us| script.contact_at(*at_us).fz_n >= threshold_n);
+        let passes_us = passes_us.expect("it presses hard enough");
         Self { bridge, press, passes_us }
     }
 

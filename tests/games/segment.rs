@@ -82,13 +82,22 @@ impl Segment {
 
     /// The same, later.
     pub(crate) fn after(&self, ms: u64) -> Self {
-        let later =
-            |press: &Press| Press { begin_ms: press.begin_ms + ms, end_ms: press.end_ms + ms, ..*press };
+        self.at_times(|at_ms| at_ms + ms)
+    }
+
+    /// The same at another pace: all takes so many times as long.
+    pub(crate) fn slower(&self, times: f64) -> Self {
+        self.at_times(|at_ms| (at_ms as f64 * times) as u64)
+    }
+
+    fn at_times(&self, at: impl Fn(u64) -> u64) -> Self {
+        let press =
+            |press: &Press| Press { begin_ms: at(press.begin_ms), end_ms: at(press.end_ms), ..*press };
         let touch = |touch: &Touch| Touch {
-            begin_ms: touch.begin_ms + ms,
-            end_ms: touch.end_ms + ms,
+            begin_ms: at(touch.begin_ms),
+            end_ms: at(touch.end_ms),
             towards: touch.towards,
-            presses: touch.presses.iter().map(later).collect(),
+            presses: touch.presses.iter().map(press).collect(),
         };
         Self(self.0.iter().map(touch).collect())
     }

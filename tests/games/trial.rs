@@ -12,8 +12,10 @@ use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
 
 use crate::clock::{MS, monotonic_ns, wait_until};
 use crate::desk::{Desk, Process, await_some};
-use crate::heard::mispresses;
-use crate::player::{Player, Style};
+use crate::hand::Style;
+use crate::heard::Heard;
+use crate::pads::{Kind, Owned};
+use crate::player::Player;
 use crate::segment::Segment;
 
 /// A game that is on the screen and waits for its player.
@@ -41,6 +43,8 @@ pub(crate) enum Progress {
 pub(crate) enum Way<'a> {
     /// A finger on a pad, through the bridge; pad and finger are those of the seed.
     Pad { style: Style, seed: u64, profile: &'a str },
+    /// Somebody on a pad that people own; both are those of the seed.
+    Owned { kind: Kind, seed: u64, profile: &'a str },
     /// The commands themselves, through the same output.
     Plain { profile: &'a str },
 }
@@ -49,6 +53,7 @@ impl fmt::Display for Way<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Plain { profile } => write!(f, "{profile}: the commands themselves"),
+            Self::Owned { kind, seed, profile } => write!(f, "{profile}: {kind}, seed {seed}"),
             Self::Pad { style: Style { aim_mm, force_share }, seed, profile } => {
                 write!(f, "{profile}: finger and pad {seed}, {aim_mm} mm, {:.0} %,", 100.0 * force_share)
             }
@@ -63,6 +68,8 @@ pub(crate) struct Outcome {
     pub(crate) reached_s: Result<f64, String>,
     /// Of a pad: things that did not come down as they were meant, or came down unasked.
     pub(crate) mispresses: usize,
+    /// And what went down and up when.
+    pub(crate) events: Vec<String>,
 }
 
 impl fmt::Display for Outcome {
@@ -88,15 +95,9 @@ const LOOK_MS: u64 = 15;
 /// Plays `segment` once and watches.
 pub(crate) fn play(game: &mut dyn Game, segment: &Segment, way: Way<'_>) -> Outcome {
     match way {
-        Way::Pad { style, seed, profile } => {
-            let bridge = Bridge::start(game.desk(), Player::new(style, seed), profile);
-            bridge.player.play(segment);
-            let begin_ns = monotonic_ns();
-            let reached_s = watch(game, segment, |_| ());
-            wait_until(begin_ns + (segment.length_ms() + RELEASED_MS) * MS);
-            let Recorded { capture, begun_us } = bridge.end();
-            let mispresses = mispresses(&capture, segment, begun_us, &profile_of(profile));
-            Outcome { reached_s, mispresses }
+        Way::Pad { style, seed, profile } => play_on(Player::on_twin(style, seed), game, segment, profile),
+        Way::Owned { kind, seed, profile } => {
+            play_on(Player::Owned(Owned::start(kind, seed)), game, segment, profile)
         }
         Way::Plain { profile } => {
             let mut sink = X11Sink::open(Some(&game.desk().display), None).unwrap();
@@ -107,9 +108,20 @@ pub(crate) fn play(game: &mut dyn Game, segment: &Segment, way: Way<'_>) -> Outc
                     sink.write(&[*event]).unwrap();
                 }
             });
-            Outcome { reached_s, mispresses: 0 }
+            Outcome { reached_s, mispresses: 0, events: Vec::new() }
         }
     }
+}
+
+fn play_on(player: Player, game: &mut dyn Game, segment: &Segment, profile: &str) -> Outcome {
+    let bridge = Bridge::start(game.desk(), player, profile);
+    bridge.player.play(segment);
+    let begin_ns = monotonic_ns();
+    let reached_s = watch(game, segment, |_| ());
+    wait_until(begin_ns + (segment.length_ms() + RELEASED_MS) * MS);
+    let Recorded { capture, begun_us } = bridge.end();
+    let Heard { mispresses, events } = Heard::of(&capture, segment, begun_us, &profile_of(profile));
+    Outcome { reached_s, mispresses, events }
 }
 
 /// Looks at the screen until the landmark is reached or cannot be; `step` hears how long it has been.
@@ -150,6 +162,8 @@ pub(crate) fn profile_of(name: &str) -> Profile {
 /// The program that plays the pad into the desk, and writes down what it hears.
 pub(crate) struct Bridge {
     program: Process,
+    /// When it was started.
+    started_us: u64,
     pub(crate) player: Player,
     folder: PathBuf,
 }
@@ -172,10 +186,11 @@ impl Bridge {
         let folder = tempfile::tempdir_in(desk.home.path()).unwrap().keep();
         let mut program = tactpad(&folder);
         program.args(verb).args(["--output", "x11", "--profile", profile]);
-        program.args(["--pad", &format!("serial:{}", player.path())]).env("DISPLAY", &desk.display);
+        program.args(["--pad", &player.address()]).env("DISPLAY", &desk.display);
         let told = File::create(folder.join("told")).unwrap();
         let program = program.stdout(Stdio::null()).stderr(told).spawn().unwrap();
-        let bridge = Self { program: Process(program), player, folder };
+        let started_us = monotonic_ns() / 1_000;
+        let bridge = Self { program: Process(program), started_us, player, folder };
         let ready = await_some(10_000, || bridge.hears().then_some(()));
         assert!(ready.is_some(), "{}", fs::read_to_string(bridge.folder.join("told")).unwrap());
         bridge
@@ -191,21 +206,21 @@ impl Bridge {
     fn hears(&self) -> bool {
         let status: serde_json::Value =
             serde_json::from_str(&self.ctl(&["status", "--json"])).unwrap_or_default();
-        status["state"] == "playing" && status["health"]["samples"].as_u64() > Some(RESTING_SAMPLES)
+        status["state"] == "playing"
+            && status["health"]["samples"].as_u64() > Some(self.player.resting_samples())
     }
 
     /// Ends it.
     pub(crate) fn end(mut self) -> Recorded {
         assert!(tactpad(&self.folder).args(["ctl", "quit"]).output().unwrap().status.success());
         assert!(self.program.0.wait().unwrap().success());
-        let begun_us = self.player.begun().expect("the player has begun").pad_us;
+        let origin_us = if self.player.has_clock() { 0 } else { self.started_us };
+        let begun_us = self.player.begun().expect("the player has begun").pad_us - origin_us;
         Recorded { capture: self.folder.join(CAPTURE), begun_us }
     }
 }
 
 const CAPTURE: &str = "play.cap";
-/// After so many samples of a pad that rests its zero is known.
-const RESTING_SAMPLES: u64 = 800;
 
 /// The program under test, with its files in `folder`.
 pub(crate) fn tactpad(folder: &Path) -> Command {

@@ -119,7 +119,8 @@ fn ones_own_profile_stands_before_the_shipped_one() {
     assert_eq!(
         list,
         "super-mario\ntetris\ntank-battle\ncontra\npointer\none-button\nsuper-mario-left\nsuper-mario-light\n\
-         supertux\nvitetris\nbtanks\ntablet\ntouchpad\nboard-seated\nboard-standing\n"
+         supertux\nvitetris\nbtanks\ntablet\ntouchpad\nboard-seated\nboard-standing\n\
+         vitetris-board\n"
     );
     let edited = tactpad(folder, "profile edit contra");
     let path = own(folder, "contra.toml");
@@ -137,7 +138,7 @@ fn ones_own_profile_stands_before_the_shipped_one() {
         |name: &str| list.lines().find(|line| line.split(' ').next() == Some(name)).unwrap_or_default();
     assert!(line("contra").ends_with(" your own, before the shipped one"), "{list}");
     assert!(line("zelda").ends_with(" your own") && line("pointer") == "pointer", "{list}");
-    assert_eq!(list.lines().count(), 16, "{list}");
+    assert_eq!(list.lines().count(), 17, "{list}");
     let list: Value = serde_json::from_str(&printed(&tactpad(folder, "profile list --json"))).unwrap();
     assert_eq!(list["folder"], own(folder, "").to_str().unwrap().trim_end_matches('/'));
     let contra = json!({ "name": "contra", "own": true, "shipped": true, "file": path.to_str().unwrap() });
@@ -159,7 +160,7 @@ fn names_that_nothing_has_are_refused_with_a_way_out() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     printed(&tactpad(folder, "profile new zelda --save"));
-    refuses(folder, "profile check nope", &["there is no profile \"nope\"", "board-standing, zelda"]);
+    refuses(folder, "profile check nope", &["there is no profile \"nope\"", "vitetris-board, zelda"]);
     refuses(folder, "profile edit nope", &["no profile \"nope\"", "`tactpad profile new --save \"nope\"`"]);
     refuses(folder, "profile edit ./x.toml", &["./x.toml is a file: open it in an editor"]);
     // A name with a slash is a file from here on, not from the folder.

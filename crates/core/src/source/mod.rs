@@ -160,6 +160,33 @@ impl Source {
         matches!(self.measures, Measures::Wrench(..))
     }
 
+    /// What a profile's newton and its plate are on this pad, in one sentence.
+    pub fn scale_sentence(&self) -> String {
+        let of_area = |half_mm: [f64; 2]| {
+            let [width_mm, height_mm] = half_mm.map(|half_mm| 2.0 * half_mm);
+            format!("its area of {width_mm:.0} mm by {height_mm:.0} mm is the plate of 60 mm")
+        };
+        match &self.measures {
+            Measures::Cells(_, Reach { half_mm, standing_n: Some(standing_n), .. })
+            | Measures::Wrench(_, Reach { half_mm, standing_n: Some(standing_n), .. }) => {
+                format!("{standing_n} N here are the weight of who stands on the pad; {}", of_area(*half_mm))
+            }
+            Measures::Cells(_, Reach { half_mm, full_n, .. })
+            | Measures::Wrench(_, Reach { half_mm, full_n, .. }) => {
+                format!("1 N here is {} N on the pad; {}", full_n / FULL_N, of_area(*half_mm))
+            }
+            Measures::Contact(Touching { force: None, touch_n, .. }) => {
+                format!("a touch is {touch_n} N here; the pad's whole area is the plate of 60 mm")
+            }
+            Measures::Contact(Touching { full_share, .. }) => {
+                let share = 100.0 * full_share / FULL_N;
+                format!(
+                    "1 N here is {share:.0} % of the full pressure; the pad's whole area is the plate of 60 mm"
+                )
+            }
+        }
+    }
+
     /// The decoder of its channels; `None` if they are too many or none, which the reader refuses.
     pub fn decoder(&self) -> Option<Decoder> {
         let reach = match &self.measures {

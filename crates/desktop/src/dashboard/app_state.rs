@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde_json::Value;
 
 use super::feed::Feed;
-use super::frame::{StatusMessage, status_message};
+use super::frame::{DescribedPad, StatusMessage, status_message};
 use super::guides::guide::GuideContext;
 use super::guides::list::Guides;
 use super::host::DashboardHost;
@@ -138,6 +138,7 @@ impl AppState {
             sentence: status.state.sentence(),
             warning_sentence: status.warning.map(|warning| warning.to_string()),
             profile_id: self.host.playing(),
+            described: self.host.described().as_deref().map(DescribedPad::from),
             status,
         };
         let shadowed = self.shadow.lock().unwrap_or_else(PoisonError::into_inner).stages.clone();

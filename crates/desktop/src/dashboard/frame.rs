@@ -8,9 +8,11 @@ use tactpad_bridge::latency::{Durations, Percentiles};
 use tactpad_bridge::snapshot::{Status, Uncertainty};
 use tactpad_bridge::timing::{ProfileDelays, Stages};
 use tactpad_bridge::watchers::PressLine;
+use tactpad_core::pipeline::contact::balance::UV_PER_N;
 use tactpad_core::pipeline::control::OutputEvent;
 use tactpad_core::pipeline::mapping::profile::sketch::{Sketch, control};
 use tactpad_core::quantity::{CHANNELS, Contact};
+use tactpad_core::source::{FULL_N, Measures, Source};
 
 /// Where a reader of the feed goes on.
 #[derive(Clone, Copy, Debug, Default)]
@@ -100,6 +102,36 @@ pub(super) struct StatusMessage<'s> {
     pub(super) warning_sentence: Option<String>,
     /// The name or file by which the profile was asked for.
     pub(super) profile_id: String,
+    /// What the pad is, if it is no strain pad.
+    pub(super) described: Option<DescribedPad>,
+}
+
+/// What a described pad is and measures, for people.
+#[derive(Serialize)]
+pub(super) struct DescribedPad {
+    title: String,
+    /// Names of its channels; none where it tells the contact itself.
+    channels: Vec<String>,
+    /// What a channel's µV are on the pad, N; `None` where channels are not forces alone.
+    n_per_uv: Option<f64>,
+    has_shear: bool,
+    scale_sentence: String,
+}
+
+impl From<&Source> for DescribedPad {
+    fn from(source: &Source) -> Self {
+        let n_per_uv = match &source.measures {
+            Measures::Cells(_, reach) => Some(reach.full_n / FULL_N / UV_PER_N),
+            Measures::Wrench(..) | Measures::Contact(_) => None,
+        };
+        Self {
+            title: source.title.clone(),
+            channels: source.channel_names(),
+            n_per_uv,
+            has_shear: source.has_shear(),
+            scale_sentence: source.scale_sentence(),
+        }
+    }
 }
 
 /// A value for each stage, and for the whole way.
@@ -176,4 +208,30 @@ pub(super) fn status_message(
 /// As text; what cannot be written is an empty document.
 pub(super) fn json(document: &impl Serialize) -> String {
     serde_json::to_string(document).unwrap_or_else(|_| "{}".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tactpad_core::source::{read, shipped};
+
+    #[test]
+    fn a_described_pad_says_what_its_numbers_are() {
+        let of = |name| DescribedPad::from(&read::read(shipped::text(name).unwrap()).0.unwrap());
+        let board = of("balance-board");
+        assert_eq!(board.channels, ["upper left", "upper right", "lower left", "lower right"]);
+        assert_eq!((board.n_per_uv, board.has_shear), (Some(0.05), false));
+        let area = "its area of 433 mm by 238 mm is the plate of 60 mm";
+        assert_eq!(board.scale_sentence, format!("1 N here is 50 N on the pad; {area}"));
+        let standing = of("balance-board-standing").scale_sentence;
+        assert_eq!(standing, format!("2 N here are the weight of who stands on the pad; {area}"));
+        let pen = of("tablet");
+        assert!(pen.channels.is_empty() && pen.n_per_uv.is_none());
+        assert!(
+            pen.scale_sentence.starts_with("1 N here is 16 % of the full pressure"),
+            "{}",
+            pen.scale_sentence
+        );
+        assert!(of("spacemouse").has_shear);
+    }
 }

@@ -1,12 +1,14 @@
 //! The host of the page: the interface of the program around the bridge, for profiles, the doctor and reports.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use serde::Serialize;
 
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::head::Head;
 use tactpad_core::pipeline::mapping::read::check::OutputChoice;
+use tactpad_core::source::Source;
 use tactpad_core::time::HostInstant;
 use tactpad_core::toml_text::diag::Diagnostic;
 use tactpad_lab::play::guide::Guide;
@@ -23,9 +25,14 @@ pub trait DashboardHost: Send + Sync {
     /// Which bindings of a profile are played here.
     fn output(&self) -> OutputChoice;
 
+    /// The description of the pad; `None` of a strain pad.
+    fn described(&self) -> Option<Arc<Source>> {
+        None
+    }
+
     /// Whether the pad measures forces along the plate.
     fn pad_has_shear(&self) -> bool {
-        true
+        self.described().is_none_or(|pad| pad.has_shear())
     }
 
     /// A profile by its name. `None` if there is none, or if it is no name: no file outside the folder of profiles is read.

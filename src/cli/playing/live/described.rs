@@ -1,6 +1,7 @@
 //! Pads that a description tells of, for the live verbs.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 
@@ -28,7 +29,7 @@ pub(super) struct SourceOption {
 
 /// A pad that is described.
 pub(super) struct DescribedPad {
-    source: Source,
+    source: Arc<Source>,
     text: String,
     /// Where it is to be opened.
     address: PadAddress,
@@ -60,7 +61,7 @@ impl SourceOption {
                     .into(),
             ));
         }
-        let source = source::usable(&found)?;
+        let source = Arc::new(source::usable(&found)?);
         let address = address(pad, &source)?;
         Ok(Some(DescribedPad { source, text: found.text, address, keeps_pointer: self.no_grab }))
     }
@@ -140,9 +141,9 @@ impl DescribedPad {
         Ok(PlayingDecoder { name: format!("{} ({name})", decoder.name()), decoder, place: None, file })
     }
 
-    /// Whether it measures forces along the plate.
-    pub(super) const fn has_shear(&self) -> bool {
-        self.source.has_shear()
+    /// Its description.
+    pub(super) fn source(&self) -> Arc<Source> {
+        Arc::clone(&self.source)
     }
 
     /// Opens it.
@@ -153,7 +154,7 @@ impl DescribedPad {
         if let (Origin::Evdev(_), PadAddress::Described { path, .. }) = (&self.source.origin, &self.address) {
             let path = path.as_ref().map(PathBuf::from);
             return OpenedPad::input_device(
-                EvdevOpener::new(self.source.clone(), path, self.keeps_pointer),
+                EvdevOpener::new(self.source.as_ref().clone(), path, self.keeps_pointer),
                 patience,
             );
         }

@@ -22,6 +22,7 @@ use tactpad::dashboard::server::Dashboard;
 use tactpad::lab::play::guide::Guide;
 use tactpad::pipeline::capture::head::Head;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
+use tactpad::source::Source;
 
 /// A page that has its address, and waits for its bridge.
 pub(super) struct Page {
@@ -76,8 +77,8 @@ impl DashboardHost for Shelf {
         self.output
     }
 
-    fn pad_has_shear(&self) -> bool {
-        self.selection.lock().unwrap_or_else(PoisonError::into_inner).pad_has_shear
+    fn described(&self) -> Option<Arc<Source>> {
+        self.selection.lock().unwrap_or_else(PoisonError::into_inner).described.clone()
     }
 
     fn read(&self, name: &str) -> Option<StoredProfile> {

@@ -142,7 +142,7 @@ impl TerminalHost {
     /// The same, of a bridge on this pad: what of `profile` does nothing on it is said now, and of others when they are read.
     pub(super) fn on_pad(self, pad: Option<&DescribedPad>, profile: &ReadProfile) -> Self {
         let mut selection = self.selection.lock().unwrap_or_else(PoisonError::into_inner);
-        selection.pad_has_shear = pad.is_none_or(DescribedPad::has_shear);
+        selection.described = pad.map(DescribedPad::source);
         let warnings = selection.shear_warnings(&selection.name, profile);
         drop(selection);
         if !warnings.is_empty() {

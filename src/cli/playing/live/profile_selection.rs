@@ -3,11 +3,13 @@
 use std::fs;
 use std::os::unix::fs::MetadataExt;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::cli::playing::profile;
 use crate::cli::printing::written::printable;
 use tactpad::pipeline::mapping::read::ReadProfile;
 use tactpad::pipeline::mapping::read::shear::bound_to_shear;
+use tactpad::source::Source;
 
 /// The name that selects the profile by the program in the foreground.
 pub(super) const AUTO: &str = "auto";
@@ -16,7 +18,7 @@ pub(super) const AUTO: &str = "auto";
 pub(super) const FALLBACK: &str = "super-mario";
 
 /// The profile that people have chosen, and the file that it comes from.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct ProfileSelection {
     /// Name or file of the profile in play.
     pub(super) name: String,
@@ -26,8 +28,8 @@ pub(super) struct ProfileSelection {
     pub(super) fallback: Option<String>,
     /// Number of profile requests by people so far.
     pub(super) request_count: u64,
-    /// Whether the pad that it is played on measures forces along the plate.
-    pub(super) pad_has_shear: bool,
+    /// The description of the pad that it is played on, if it has one.
+    pub(super) described: Option<Arc<Source>>,
 }
 
 /// The state of a file, from its metadata: it differs after a write or a replacement.
@@ -54,7 +56,7 @@ impl ProfileSelection {
     pub(super) fn of(argument: &str) -> Self {
         let fallback = fallback(argument).map(str::to_owned);
         let name = fallback.clone().unwrap_or_else(|| argument.to_owned());
-        Self { stamp: FileStamp::of(&name), name, fallback, request_count: 0, pad_has_shear: true }
+        Self { stamp: FileStamp::of(&name), name, fallback, request_count: 0, described: None }
     }
 
     /// The argument of a command line that makes the same selection, in any folder.
@@ -72,12 +74,13 @@ impl ProfileSelection {
             Some(name) => Self::of(name),
             None => Self { stamp: FileStamp::of(&self.name), ..self.clone() },
         };
-        Self { request_count: self.request_count + 1, pad_has_shear: self.pad_has_shear, ..selection }
+        Self { request_count: self.request_count + 1, described: self.described.clone(), ..selection }
     }
 
     /// What of a profile does nothing on the pad, a line and more for each; nothing if that is fine.
     pub(super) fn shear_warnings(&self, named: &str, profile: &ReadProfile) -> String {
-        let found = if self.pad_has_shear { Vec::new() } else { bound_to_shear(profile.text()) };
+        let has_shear = self.described.as_ref().is_none_or(|pad| pad.has_shear());
+        let found = if has_shear { Vec::new() } else { bound_to_shear(profile.text()) };
         found.iter().map(|found| found.render(&printable(named)) + "\n").collect()
     }
 }

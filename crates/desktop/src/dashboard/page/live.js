@@ -10,6 +10,8 @@ import { Finger, Plate } from "./plate.js";
 import { Status } from "./status.js";
 
 const FIGURES_MS = 100;
+// A pad that cannot tell how sure a force is has this deviation: as much as the whole scale.
+const UNKNOWN_N = 5;
 const QUANTITIES = [["x", "x_mm", "mm", 1], ["y", "y_mm", "mm", 1], ["Fx", "fx_n", "N", 2], ["Fy", "fy_n", "N", 2], ["Fz", "fz_n", "N", 2]];
 
 /** Place and force as numbers, each with its standard deviation. */
@@ -22,9 +24,15 @@ class Readout {
     this.rows = QUANTITIES.map(([name, key, unit, digits]) => {
       const value = el("td");
       const sigma = el("td");
-      body.append(el("tr", {}, el("th", { scope: "row", text: name }), value, sigma));
-      return { key, unit, digits, value, sigma };
+      const line = el("tr", {}, el("th", { scope: "row", text: name }), value, sigma);
+      body.append(line);
+      return { key, unit, digits, value, sigma, line };
     });
+  }
+
+  /** Leaves out what the pad does not measure. */
+  describe(has_shear) {
+    for (const { key, line } of this.rows) line.hidden = !has_shear && (key === "fx_n" || key === "fy_n");
   }
 
   draw(contact, uncertainty) {
@@ -33,7 +41,8 @@ class Readout {
     this.#last_ms = now;
     for (const { key, unit, digits, value, sigma } of this.rows) {
       say(value, contact === null ? "–" : `${number(contact[key], digits)} ${unit}`);
-      say(sigma, contact === null || !uncertainty ? "–" : number(uncertainty[key], digits));
+      const is_told = contact !== null && uncertainty && !(unit === "N" && uncertainty[key] >= UNKNOWN_N);
+      say(sigma, is_told ? number(uncertainty[key], digits) : "–");
     }
   }
 }
@@ -55,12 +64,14 @@ export class LiveView {
     this.freshness = el("p", { class: "quiet freshness", id: "freshness" });
     this.status = new Status();
     this.channels = new Channels();
+    this.channelsCard = card("Channels", scroller("Channels", this.channels.node), this.channels.note);
+    this.scale = el("p", { class: "quiet small", id: "scale", hidden: true });
     this.lanes = new EventLanes();
     this.latency = new Latency();
     const column = (...cards) => el("div", { class: "live-column" }, ...cards);
     section.append(this.status.node, el("div", { class: "live-grid" },
-      column(card("Plate", this.title, this.plate.node, scroller("Finger", this.readout.node), this.freshness),
-        card("Channels", scroller("Channels", this.channels.node), this.channels.note)),
+      column(card("Plate", this.title, this.plate.node, scroller("Finger", this.readout.node), this.scale, this.freshness),
+        this.channelsCard),
       column(card("Forces", this.forces.node), card("Held now", this.held), card("Events", this.lanes.node)),
       column(card("Latency", this.latency.node), card("Counters", this.status.counters))));
   }
@@ -80,8 +91,20 @@ export class LiveView {
 
   /** Takes a status. */
   setStatus(message) {
+    if (this.message?.status.described?.title !== message.status.described?.title) this.#describe(message.status.described);
     this.message = message;
     this.status.draw(message);
+  }
+
+  /** Fits the view to a described pad; null is a strain pad. */
+  #describe(pad) {
+    const has_shear = pad?.has_shear ?? true;
+    this.readout.describe(has_shear);
+    this.forces.describe(has_shear);
+    this.channels.describe(pad);
+    this.channelsCard.hidden = pad?.channels.length === 0;
+    this.scale.hidden = pad === null;
+    say(this.scale, pad === null ? "" : `${pad.title}: ${pad.scale_sentence}.`);
   }
 
   /** Draws the last frame. */

@@ -55,7 +55,9 @@ function followStatus(views) {
     if (!section("live").hidden) views.live.drawSlow(live.ages);
     const age_ms = live.ages.p95();
     if (age_ms !== null) document.documentElement.dataset.ageMs = age_ms.toFixed(2);
-    say(section("warning"), message.status.warning_sentence ? `⚠ ${message.status.warning_sentence}` : "");
+    const { warning_sentence, line } = message.status;
+    const sentences = [warning_sentence, line?.sentence].filter((sentence) => sentence);
+    say(section("warning"), sentences.map((sentence) => `⚠ ${sentence}`).join(" "));
   });
 }
 

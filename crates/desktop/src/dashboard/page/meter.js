@@ -58,13 +58,21 @@ class Meter {
   constructor({ axis, name, meaning, sides, least_n }) {
     Object.assign(this, { axis, sides, least_n, max_n: least_n });
     this.value = el("span", { class: "meter-value" });
+    this.meaning = el("span", { class: "quiet" });
+    this.words = meaning;
     this.fill = el("div", { class: "meter-fill" });
     this.cursor = el("div", { class: "meter-cursor" });
     this.scale = el("div", { class: "meter-scale" });
     this.rows = el("div", { class: "meter-rows" });
+    this.describe(true);
     this.node = el("div", { class: `meter ${sides === 2 ? "two-sided" : ""}` },
-      el("div", { class: "meter-head" }, el("strong", { text: name }), el("span", { class: "quiet", text: meaning }), this.value),
+      el("div", { class: "meter-head" }, el("strong", { text: name }), this.meaning, this.value),
       el("div", { class: "meter-body" }, el("div", { class: "meter-track" }, this.fill), this.rows, this.scale, el("div", { class: "meter-cursor-lane" }, this.cursor)));
+  }
+
+  /** Says whether the pad measures this force. */
+  describe(is_measured) {
+    say(this.meaning, is_measured ? this.words : "not measured by this pad");
   }
 
   /** The place of a force on the track, 0 to 1. */
@@ -122,8 +130,19 @@ export class Forces {
   /** @param {(meter: Meter, row: object, mark: object) => HTMLElement} makeMark */
   constructor(makeMark = plainMark) {
     this.makeMark = makeMark;
+    this.has_shear = true;
     this.meters = FORCES.map((force) => new Meter(force));
     this.node = el("div", { class: "meters" }, ...this.meters.map((meter) => meter.node));
+  }
+
+  /** Leaves out the forces that the pad does not measure, unless the profile asks for them. */
+  describe(has_shear) {
+    this.has_shear = has_shear;
+    for (const meter of this.meters) {
+      const is_measured = has_shear || meter.axis === "fz";
+      meter.describe(is_measured);
+      meter.node.hidden = !is_measured && !meter.rows.hasChildNodes();
+    }
   }
 
   /** Shows the thresholds of a sketch. */
@@ -139,6 +158,7 @@ export class Forces {
         el("div", { class: "meter-line" }, meter.spans[index], ...row.marks.map((mark) => this.makeMark(meter, row, mark))))));
       meter.placeSpans(own);
     }
+    this.describe(this.has_shear);
   }
 
   /** Fits scales and spans to a sketch that has the same thresholds at other forces. */
@@ -153,7 +173,10 @@ export class Forces {
 
   /** Follows the finger; null means that there is none. */
   draw(contact) {
-    for (const meter of this.meters) meter.setForce(contact === null ? null : contact[`${meter.axis}_n`]);
+    for (const meter of this.meters) {
+      const is_measured = this.has_shear || meter.axis === "fz";
+      meter.setForce(contact === null || !is_measured ? null : contact[`${meter.axis}_n`]);
+    }
   }
 }
 

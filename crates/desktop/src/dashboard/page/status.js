@@ -84,8 +84,9 @@ export class Status {
     if (status.state !== this.#state) this.#changed(status);
     say(this.sentence, status.sentence === status.state ? "" : status.sentence ?? "");
     for (const [key, node] of this.lines) {
-      say(node, status[key] ?? "–");
-      set(node.parentElement, { "data-empty": status[key] === null || status[key] === undefined });
+      const text = status[key] ?? (key === "pad" ? status.described?.title : null) ?? null;
+      say(node, text ?? "–");
+      set(node.parentElement, { "data-empty": text === null });
     }
     if (document.activeElement !== this.choice && status.profile_id) this.choice.value = status.profile_id;
     this.error.hidden = !status.profile_error;

@@ -1,6 +1,6 @@
 //! The profiles that are inside the program, so that it runs from any folder.
 
-const SHIPPED: [(&str, &str); 15] = [
+const SHIPPED: [(&str, &str); 16] = [
     ("super-mario", include_str!("../../../../../../mappings/super-mario.toml")),
     ("tetris", include_str!("../../../../../../mappings/tetris.toml")),
     ("tank-battle", include_str!("../../../../../../mappings/tank-battle.toml")),
@@ -16,6 +16,7 @@ const SHIPPED: [(&str, &str); 15] = [
     ("touchpad", include_str!("../../../../../../mappings/touchpad.toml")),
     ("board-seated", include_str!("../../../../../../mappings/board-seated.toml")),
     ("board-standing", include_str!("../../../../../../mappings/board-standing.toml")),
+    ("vitetris-board", include_str!("../../../../../../mappings/vitetris-board.toml")),
 ];
 
 /// The names under which profiles are shipped.
@@ -130,7 +131,8 @@ mod tests {
                 "tablet",
                 "touchpad",
                 "board-seated",
-                "board-standing"
+                "board-standing",
+                "vitetris-board"
             ]
         );
         assert!(names().all(|name| text(name).is_some_and(|text| text.starts_with(SCHEMA_LINE))));

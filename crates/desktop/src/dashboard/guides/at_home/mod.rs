@@ -45,6 +45,12 @@ impl PageGuide for AtHome {
         if !context.pad.is_heard {
             return Err(format!("there is no pad to calibrate: {}", absence(context.status.state)));
         }
+        if let Some(pad) = context.host.described() {
+            return Err(format!(
+                "this calibrates strain pads of nine channels, and {} is decoded by its description: `tactpad source show {}`",
+                pad.title, pad.name
+            ));
+        }
         self.stop(context);
         let name = name_of(&context.pad);
         let was_begun = context.host.has_session(&name);

@@ -5,22 +5,18 @@ mod frames;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
-use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::fd::{AsFd, BorrowedFd};
 use std::path::{Path, PathBuf};
 
 use ::evdev::raw_stream::RawDevice;
 use ::evdev::{AbsInfo, AbsoluteAxisCode, EventType, InputEvent, SynchronizationCode};
-use firmware_proto::command::Command;
-use rustix::event::epoll;
 use rustix::fs::{Mode, OFlags};
-use rustix::time::{
-    Itimerspec, TimerfdClockId, TimerfdFlags, TimerfdTimerFlags, timerfd_create, timerfd_settime,
-};
 use tactpad_core::source::{Evdev, Origin, Source};
 
 use super::Transport;
+use super::framed::{Framed, FramedPort};
 use super::opener::PadError;
-use super::pacing::{is_readable, limit, monotonic_us};
+use super::pacing::is_readable;
 use found::{FoundDevice, attached, reading_command};
 use frames::{AxisRange, Change, EvdevFrames};
 
@@ -31,11 +27,8 @@ const DRAIN_READS_MAX: usize = 64;
 /// the device, and the lift with it.
 const CHECK_US: u64 = 100_000;
 
-/// A timer of 0 never fires.
-const NEVER: u64 = 0;
-
 /// An open input device.
-pub struct EvdevPort {
+struct EvdevPort {
     device: RawDevice,
     frames: EvdevFrames,
     /// Whether it is taken from the desktop while it plays.
@@ -46,14 +39,6 @@ pub struct EvdevPort {
     wants_grab: bool,
     /// When the true state was asked last.
     checked_us: u64,
-    /// When it was opened, by the monotonic clock: frames count from there.
-    origin_us: u64,
-    /// Frames that were not read yet.
-    out: Vec<u8>,
-    is_gone: bool,
-    /// Readable while `device` or `timer` is: so a poll sees both.
-    either: OwnedFd,
-    timer: OwnedFd,
 }
 
 /// Opens a described device again and again, and remembers which one it was.
@@ -88,7 +73,7 @@ impl EvdevOpener {
             return Err(PadError::Unusable(self.is_another(&found)));
         }
         let port = EvdevPort::new(device, &self.source, wanted, self.grabs);
-        match port {
+        match port.and_then(FramedPort::new) {
             Ok(port) => {
                 // A link that is named, as those in /dev/input/by-id, says by itself which device is meant.
                 self.last = (!path.is_symlink()).then_some(found);
@@ -172,12 +157,6 @@ fn open_error(path: &Path, error: &io::Error) -> PadError {
 
 impl EvdevPort {
     fn new(device: RawDevice, source: &Source, wanted: &Evdev, grabs: bool) -> io::Result<Self> {
-        let either = epoll::create(epoll::CreateFlags::CLOEXEC)?;
-        let timer =
-            timerfd_create(TimerfdClockId::Monotonic, TimerfdFlags::CLOEXEC | TimerfdFlags::NONBLOCK)?;
-        for fd in [device.as_fd(), timer.as_fd()] {
-            epoll::add(&either, fd, epoll::EventData::new_u64(0), epoll::EventFlags::IN)?;
-        }
         let mut port = Self {
             device,
             frames: EvdevFrames::new(source, wanted),
@@ -185,41 +164,13 @@ impl EvdevPort {
             is_lost: true,
             wants_grab: grabs,
             checked_us: 0,
-            origin_us: monotonic_us(),
-            out: Vec::new(),
-            is_gone: false,
-            either,
-            timer,
         };
         port.synchronize()?;
         port.grab_if_untouched()?;
-        port.set_timer()?;
         Ok(port)
     }
 
-    /// Takes what the device has reported by `now_us`.
-    fn take(&mut self, now_us: u64) -> io::Result<()> {
-        // What is not handed over yet comes first: a device that floods must not fill the memory.
-        if self.is_gone || !self.out.is_empty() {
-            return Ok(());
-        }
-        if self.hear(now_us).is_err() {
-            self.leave()?;
-        }
-        Ok(())
-    }
-
-    /// The device is gone, or another program has it.
-    fn leave(&mut self) -> io::Result<()> {
-        if !self.is_gone {
-            self.is_gone = true;
-            // One that is gone is readable for ever.
-            epoll::delete(&self.either, self.device.as_fd())?;
-        }
-        self.set_timer()
-    }
-
-    fn hear(&mut self, now_us: u64) -> io::Result<()> {
+    fn hear(&mut self, now_us: u64, out: &mut Vec<u8>) -> io::Result<()> {
         if !self.is_lost && is_readable(self.device.as_fd())? {
             for event in available(&mut self.device)? {
                 match change(event) {
@@ -227,7 +178,7 @@ impl EvdevPort {
                         self.is_lost = true;
                         break;
                     }
-                    Some(change) => self.frames.take(now_us, change, &mut self.out),
+                    Some(change) => self.frames.take(now_us, change, out),
                     None => {}
                 }
             }
@@ -238,7 +189,7 @@ impl EvdevPort {
         if self.is_lost {
             self.synchronize()?;
             if !self.is_lost {
-                self.frames.take(now_us, Change::End, &mut self.out);
+                self.frames.take(now_us, Change::End, out);
             }
         }
         self.grab_if_untouched()
@@ -286,16 +237,6 @@ impl EvdevPort {
         };
         Ok(self.device.get_absinfo()?.map(range).collect())
     }
-
-    /// Lets the descriptor poll readable when the state is to be sent again, or at once if more is to be done.
-    fn set_timer(&self) -> io::Result<()> {
-        let is_more = !self.out.is_empty() || self.is_gone || self.is_lost;
-        let due_us = self.frames.due_us().map_or(NEVER, |due_us| self.origin_us + due_us);
-        let due_us = if is_more { 1 } else { due_us };
-        let timer = Itimerspec { it_interval: limit(0), it_value: limit(due_us) };
-        timerfd_settime(&self.timer, TimerfdTimerFlags::ABSTIME, &timer)?;
-        Ok(())
-    }
 }
 
 /// The events that can be read at once; none where another reader was faster.
@@ -322,42 +263,26 @@ fn change(event: InputEvent) -> Option<Change> {
     }
 }
 
-impl Transport for EvdevPort {
+impl Framed for EvdevPort {
     fn fd(&self) -> BorrowedFd<'_> {
-        self.either.as_fd()
+        self.device.as_fd()
     }
 
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let now_us = monotonic_us().saturating_sub(self.origin_us);
-        self.take(now_us)?;
-        if !self.is_gone && !self.is_lost {
-            self.frames.repeat(now_us, &mut self.out);
+    fn take(&mut self, now_us: u64, out: &mut Vec<u8>) -> io::Result<()> {
+        self.hear(now_us, out)?;
+        if !self.is_lost {
+            self.frames.repeat(now_us, out);
         }
-        let count = self.out.len().min(bytes.len());
-        bytes.iter_mut().zip(self.out.drain(..count)).for_each(|(to, from)| *to = from);
-        self.set_timer()?;
-        match (count, self.is_gone) {
-            (0, true) => Err(io::Error::new(
-                io::ErrorKind::BrokenPipe,
-                "the device was unplugged, or another program took it",
-            )),
-            (0, false) => Err(io::ErrorKind::WouldBlock.into()),
-            (count, _) => Ok(count),
-        }
-    }
-
-    /// Does nothing: an input device takes no commands of ours.
-    fn send(&mut self, _command: &Command) -> io::Result<()> {
         Ok(())
     }
 
-    fn pause(&mut self, is_paused: bool) {
+    fn due_us(&self) -> Option<u64> {
+        if self.is_lost { Some(0) } else { self.frames.due_us() }
+    }
+
+    fn pause(&mut self, is_paused: bool) -> io::Result<()> {
         self.wants_grab = self.grabs && !is_paused;
-        let done = if is_paused { self.device.ungrab() } else { self.grab_if_untouched() };
-        if done.is_err() {
-            // Who reads next is told.
-            drop(self.leave());
-        }
+        if is_paused { self.device.ungrab() } else { self.grab_if_untouched() }
     }
 }
 

@@ -31,8 +31,13 @@ pub(super) trait Framed {
     }
 
     /// See [`Transport::pause`]; fails if it is gone.
-    fn pause(&mut self, _is_paused: bool) -> io::Result<()> {
+    fn pause(&mut self, _now_us: u64, _is_paused: bool) -> io::Result<()> {
         Ok(())
+    }
+
+    /// See [`Transport::asks_pause`].
+    fn asks_pause(&mut self) -> bool {
+        false
     }
 }
 
@@ -62,6 +67,10 @@ impl<S: Framed> FramedPort<S> {
         let port = Self { source, origin_us: monotonic_us(), out: Vec::new(), ended: None, either, timer };
         port.set_timer()?;
         Ok(port)
+    }
+
+    fn now_us(&self) -> u64 {
+        monotonic_us().saturating_sub(self.origin_us)
     }
 
     /// Ends with `error`, if it is one. A source that is gone is readable for ever.
@@ -94,7 +103,7 @@ impl<S: Framed> Transport for FramedPort<S> {
     }
 
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let now_us = monotonic_us().saturating_sub(self.origin_us);
+        let now_us = self.now_us();
         // What is not handed over yet comes first: a source that floods must not fill the memory.
         if self.ended.is_none() && self.out.is_empty() {
             let taken = self.source.take(now_us, &mut self.out);
@@ -120,8 +129,12 @@ impl<S: Framed> Transport for FramedPort<S> {
     }
 
     fn pause(&mut self, is_paused: bool) {
-        let done = self.source.pause(is_paused);
+        let done = self.source.pause(self.now_us(), is_paused);
         // Who reads next is told.
         drop(self.end(done));
+    }
+
+    fn asks_pause(&mut self) -> bool {
+        self.source.asks_pause()
     }
 }

@@ -10,9 +10,9 @@ use crate::cli::playing::source;
 use tactpad::bridge::bridge_parts::PlayingDecoder;
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
 use tactpad::bridge::transport::address::PadAddress;
-use tactpad::bridge::transport::evdev::EvdevOpener;
+use tactpad::bridge::transport::evdev::{EvdevOpener, leave};
 use tactpad::firmware_proto::DEFAULT_BAUD;
-use tactpad::source::{Origin, Source};
+use tactpad::source::{Measures, Origin, Source};
 
 /// The description of a pad.
 #[derive(Debug, Args)]
@@ -138,6 +138,15 @@ impl DescribedPad {
             .ok_or_else(|| Failure::Unusable(format!("{name} describes no pad that can be played with")))?;
         let file = Some(self.text.clone().into_bytes());
         Ok(PlayingDecoder { name: format!("{} ({name})", decoder.name()), decoder, place: None, file })
+    }
+
+    /// How the player gives it back to the desktop without a keyboard, if it is taken from it.
+    pub(super) fn leave(&self) -> Option<&'static str> {
+        let takes = matches!(&self.source.origin, Origin::Evdev(evdev) if evdev.grabs) && !self.keeps_pointer;
+        match &self.source.measures {
+            Measures::Contact(touching) if takes => Some(leave::how(touching)),
+            _ => None,
+        }
     }
 
     /// Whether it measures forces along the plate.

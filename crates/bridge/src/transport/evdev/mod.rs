@@ -1,7 +1,11 @@
 //! A pad that is an input device of the system: its events become frames here, so that everything behind hears one language.
 
+mod axis;
+mod fingers;
 pub mod found;
 mod frames;
+pub mod leave;
+mod tip;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
@@ -17,8 +21,9 @@ use super::Transport;
 use super::framed::{Framed, FramedPort};
 use super::opener::PadError;
 use super::pacing::is_readable;
+use axis::AxisRange;
 use found::{FoundDevice, attached, reading_command};
-use frames::{AxisRange, Change, EvdevFrames};
+use frames::{Change, EvdevFrames};
 
 /// Reads at once after events were lost: more than the kernel's queue of a device holds.
 const DRAIN_READS_MAX: usize = 64;
@@ -166,7 +171,7 @@ impl EvdevPort {
             checked_us: 0,
         };
         port.synchronize()?;
-        port.grab_if_untouched()?;
+        port.grab_if_untouched(0)?;
         Ok(port)
     }
 
@@ -182,7 +187,7 @@ impl EvdevPort {
                     None => {}
                 }
             }
-        } else if self.frames.is_anything_down() && self.checked_us + CHECK_US <= now_us {
+        } else if !self.frames.down().is_empty() && self.checked_us + CHECK_US <= now_us {
             self.checked_us = now_us;
             self.is_lost |= self.down()? != *self.frames.down();
         }
@@ -192,17 +197,17 @@ impl EvdevPort {
                 self.frames.take(now_us, Change::End, out);
             }
         }
-        self.grab_if_untouched()
+        self.grab_if_untouched(now_us)
     }
 
     /// Takes the device from the desktop, if that is wanted and nothing on it is down.
-    fn grab_if_untouched(&mut self) -> io::Result<()> {
+    fn grab_if_untouched(&mut self, now_us: u64) -> io::Result<()> {
         let is_due = self.wants_grab && !self.device.is_grabbed();
-        if !is_due || self.is_lost || self.frames.is_anything_down() || is_readable(self.device.as_fd())? {
+        if !is_due || self.is_lost || self.frames.is_in_use(now_us) || is_readable(self.device.as_fd())? {
             return Ok(());
         }
         // The kernel may know better than what was read.
-        self.is_lost = !self.down()?.is_empty();
+        self.is_lost = self.down()? != *self.frames.down();
         if self.is_lost { Ok(()) } else { self.device.grab() }
     }
 
@@ -280,9 +285,13 @@ impl Framed for EvdevPort {
         if self.is_lost { Some(0) } else { self.frames.due_us() }
     }
 
-    fn pause(&mut self, is_paused: bool) -> io::Result<()> {
+    fn pause(&mut self, now_us: u64, is_paused: bool) -> io::Result<()> {
         self.wants_grab = self.grabs && !is_paused;
-        if is_paused { self.device.ungrab() } else { self.grab_if_untouched() }
+        if is_paused { self.device.ungrab() } else { self.grab_if_untouched(now_us) }
+    }
+
+    fn asks_pause(&mut self) -> bool {
+        self.frames.take_leave() && self.grabs
     }
 }
 

@@ -132,6 +132,11 @@ impl ContactStage {
         self.watch.warning()
     }
 
+    /// Whether nobody was weighed yet on a pad that somebody is to stand on.
+    pub const fn awaits_weight(&self) -> bool {
+        self.standing.awaits_weight()
+    }
+
     /// Decoder in use.
     pub const fn decoder(&self) -> &Decoder {
         &self.decoder

@@ -29,6 +29,7 @@ mod pad;
 mod playing;
 mod program;
 mod reader;
+mod real_pads;
 mod scene;
 mod screen;
 mod sdl;
@@ -140,6 +141,45 @@ fn a_cap_of_six_axes_plays() {
 #[test]
 fn a_board_of_four_cells_plays() {
     in_guest("a_board_of_four_cells_plays", owned_pads::board);
+}
+
+#[test]
+fn what_libinput_knows_of_devices_is_read_as_it_says() {
+    real_pads::litest::sources_are_read_as_they_say();
+}
+
+#[test]
+fn real_pads_give_the_contacts_that_their_numbers_say() {
+    if real_pads::are_there() {
+        in_guest(
+            "real_pads_give_the_contacts_that_their_numbers_say",
+            real_pads::contacts_are_those_of_the_numbers,
+        );
+    }
+}
+
+#[test]
+fn real_pads_without_pressure_and_other_nodes_are_not_offered() {
+    if real_pads::are_there() {
+        in_guest(
+            "real_pads_without_pressure_and_other_nodes_are_not_offered",
+            real_pads::others_are_not_offered,
+        );
+    }
+}
+
+#[test]
+fn real_pads_are_taken_from_the_desktop_and_given_back() {
+    if real_pads::are_there() {
+        in_guest("real_pads_are_taken_from_the_desktop_and_given_back", real_pads::grabbed_and_given_back);
+    }
+}
+
+#[test]
+fn nodes_of_real_pads_are_told_apart() {
+    if real_pads::are_there() {
+        in_guest("nodes_of_real_pads_are_told_apart", real_pads::nodes_are_told_apart);
+    }
 }
 
 #[test]

@@ -181,7 +181,7 @@ fn pause(ms: u64) {
     wait_until(monotonic_ns() + ms * MS);
 }
 
-fn comes_true(what: &str, mut holds: impl FnMut() -> bool) {
+pub(crate) fn comes_true(what: &str, mut holds: impl FnMut() -> bool) {
     let limit_ns = monotonic_ns() + LIMIT_MS * MS;
     while !holds() {
         assert!(monotonic_ns() < limit_ns, "{what}: not within {LIMIT_MS} ms");
@@ -190,7 +190,7 @@ fn comes_true(what: &str, mut holds: impl FnMut() -> bool) {
 }
 
 /// Starts the program on a device that fits; waits for its gamepad.
-fn start(address: &str, more: &[&str]) -> (Running, Reader) {
+pub(crate) fn start(address: &str, more: &[&str]) -> (Running, Reader) {
     let arguments =
         [&["run", "--pad", address, "--profile", "super-mario", "--output", "uinput"], more].concat();
     let mut program = Running::start(TACTPAD, &arguments);
@@ -204,17 +204,17 @@ fn start(address: &str, more: &[&str]) -> (Running, Reader) {
     (program, reader)
 }
 
-fn ask(request: &str) {
+pub(crate) fn ask(request: &str) {
     let status = std::process::Command::new(TACTPAD).args(["ctl", request]).status();
     assert!(status.expect("ctl runs").success(), "{request}");
 }
 
-fn status() -> String {
+pub(crate) fn status() -> String {
     let output = std::process::Command::new(TACTPAD).args(["ctl", "status", "--json"]).output();
     String::from_utf8(output.expect("ctl runs").stdout).expect("text")
 }
 
-fn devices() -> String {
+pub(crate) fn devices() -> String {
     let output = std::process::Command::new(TACTPAD).args(["devices", "--json"]).output();
     String::from_utf8(output.expect("devices runs").stdout).expect("text")
 }

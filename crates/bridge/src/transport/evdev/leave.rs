@@ -3,7 +3,7 @@
 //! It must be possible on every such pad, and no play may make it by accident:
 //!
 //! - Four fingers on a touchpad, down within half a second and then still. Every touchpad with pressure tells four fingers, but many know
-//!   the places of two only. One finger plays, so four that come together are no play; fingers that rest there while one plays came
+//!   the places of two only. One finger plays, so four that come together are no play once the fourth is there; fingers that rest there while one plays came
 //!   before, or after.
 //! - A pen with its side button held in the air above a corner. An eraser or a second button is on few pens. A button alone is held by
 //!   many a grip, and whoever plays is not in the air, or not in a corner, for so long.

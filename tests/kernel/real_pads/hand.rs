@@ -91,11 +91,16 @@ impl Hand {
             (told.kind, code, value)
         };
         let mut changes: Vec<_> = report.iter().map(event).collect();
-        let pressure = AbsoluteAxisCode::ABS_MT_PRESSURE;
-        let tells_pressure =
-            changes.iter().any(|(kind, code, _)| *kind == EventType::ABSOLUTE && *code == pressure.0);
-        if self.axis(pressure).is_some() && !tells_pressure {
-            changes.push((EventType::ABSOLUTE, pressure.0, self.value(pressure, pose)));
+        // The drivers tell more than these reports.
+        let more: &[_] = match name {
+            "down" => &[AbsoluteAxisCode::ABS_MT_TOOL_TYPE, AbsoluteAxisCode::ABS_MT_PRESSURE],
+            "move" => &[AbsoluteAxisCode::ABS_MT_PRESSURE],
+            _ => &[],
+        };
+        for axis in more.iter().filter(|axis| self.axis(**axis).is_some()) {
+            if !changes.iter().any(|(kind, code, _)| *kind == EventType::ABSOLUTE && *code == axis.0) {
+                changes.push((EventType::ABSOLUTE, axis.0, self.value(*axis, pose)));
+            }
         }
         changes.extend(keys.iter().map(|(key, value)| (EventType::KEY, key.0, *value)));
         self.emit(&changes);
@@ -143,6 +148,25 @@ impl Hand {
             (EventType::KEY, KeyCode::BTN_TOUCH.0, 0),
             (EventType::KEY, KeyCode::BTN_TOOL_FINGER.0, 0),
         ]);
+    }
+
+    /// A palm comes to the touchpad, in one report with what it is.
+    pub(super) fn palm(&mut self, pose: &Pose) {
+        self.tracking_id += 1;
+        let axes = [
+            AbsoluteAxisCode::ABS_MT_SLOT,
+            AbsoluteAxisCode::ABS_MT_TRACKING_ID,
+            AbsoluteAxisCode::ABS_MT_POSITION_X,
+            AbsoluteAxisCode::ABS_MT_POSITION_Y,
+            AbsoluteAxisCode::ABS_MT_PRESSURE,
+        ];
+        let mut changes: Vec<_> =
+            axes.into_iter().map(|axis| (EventType::ABSOLUTE, axis.0, self.value(axis, pose))).collect();
+        let kind = self.axis(AbsoluteAxisCode::ABS_MT_TOOL_TYPE).expect("it tells palms").maximum();
+        changes.insert(2, (EventType::ABSOLUTE, AbsoluteAxisCode::ABS_MT_TOOL_TYPE.0, kind));
+        changes.push((EventType::KEY, KeyCode::BTN_TOUCH.0, 1));
+        changes.push((EventType::KEY, KeyCode::BTN_TOOL_FINGER.0, 1));
+        self.emit(&changes);
     }
 
     /// Four fingers come to the touchpad at once, or go. Where it knows fewer places it says how many they are.

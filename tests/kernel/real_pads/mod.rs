@@ -2,6 +2,7 @@
 
 mod hand;
 pub(crate) mod litest;
+pub(crate) mod quirks;
 
 use std::fs;
 use std::path::Path;
@@ -13,8 +14,7 @@ use tactpad::pipeline::call::Call;
 use tactpad::pipeline::capture::reader::CaptureReader;
 
 use crate::bridge::TACTPAD;
-use crate::clock::{MS, monotonic_ns, wait_until};
-use crate::owned_pads::{ask, comes_true, devices, start, status};
+use crate::owned_pads::{ask, comes_true, devices, pause, start, status};
 use crate::program::Running;
 use crate::reader::{Reader, find};
 use crate::support::leave_out;
@@ -132,10 +132,6 @@ fn trackpad(folder: &Path) -> RealDevice {
         properties: vec![PropType::POINTER, PropType::BUTTONPAD],
         reports: [("down".into(), report.clone()), ("move".into(), report)].into(),
     }
-}
-
-fn pause(ms: u64) {
-    wait_until(monotonic_ns() + ms * MS);
 }
 
 /// A contact on the plate: place in mm, force in N.

@@ -40,6 +40,11 @@ impl Fingers {
         Self { slots: vec![Slot::default(); SLOTS], at: index(at), playing: None }
     }
 
+    /// Whether the kernel reports on this slot.
+    pub(super) fn is_at(&self, slot: i32) -> bool {
+        self.at == index(slot)
+    }
+
     /// An axis of a finger has this value.
     pub(super) fn take(&mut self, axis: u16, value: i32) {
         if axis == MT_SLOT {

@@ -124,6 +124,15 @@ impl EvdevFrames {
         &self.down
     }
 
+    /// Whether the kernel's state is another one than what was told, as far as the kernel says.
+    pub(super) fn is_unlike(&self, down: &BTreeSet<u16>, ranges: &BTreeMap<u16, AxisRange>) -> bool {
+        let is_other = |(axis, range): (&u16, &AxisRange)| match *axis {
+            MT_SLOT => !self.fingers.is_at(range.value),
+            axis => axis < MT_SLOT && value(&self.axes, axis) != range.value,
+        };
+        *down != self.down || ranges.iter().any(is_other)
+    }
+
     /// Whether a button is down at `now_us`, or a tool in range.
     pub(super) fn is_in_use(&self, now_us: u64) -> bool {
         let is_quiet = now_us.saturating_sub(self.heard_us) >= LEFT_US;

@@ -42,8 +42,9 @@ struct EvdevPort {
     is_lost: bool,
     /// Whether it is to be taken from the desktop as soon as nothing on it is down: who takes it gets the releases.
     wants_grab: bool,
-    /// When the true state was asked last.
+    /// When the true state was asked last, and whether it was another one than what was told.
     checked_us: u64,
+    is_suspected: bool,
 }
 
 /// Opens a described device again and again, and remembers which one it was.
@@ -169,6 +170,7 @@ impl EvdevPort {
             is_lost: true,
             wants_grab: grabs,
             checked_us: 0,
+            is_suspected: false,
         };
         port.synchronize()?;
         port.grab_if_untouched(0)?;
@@ -177,6 +179,7 @@ impl EvdevPort {
 
     fn hear(&mut self, now_us: u64, out: &mut Vec<u8>) -> io::Result<()> {
         if !self.is_lost && is_readable(self.device.as_fd())? {
+            self.is_suspected = false;
             for event in available(&mut self.device)? {
                 match change(event) {
                     Some(Change::Lost) => {
@@ -189,7 +192,10 @@ impl EvdevPort {
             }
         } else if !self.frames.down().is_empty() && self.checked_us + CHECK_US <= now_us {
             self.checked_us = now_us;
-            self.is_lost |= self.down()? != *self.frames.down();
+            let is_unlike = self.frames.is_unlike(&self.down()?, &self.ranges()?);
+            // What is being reported just now is true before it can be read: only what stays unlike was lost.
+            self.is_lost |= is_unlike && self.is_suspected;
+            self.is_suspected = is_unlike;
         }
         if self.is_lost {
             self.synchronize()?;

@@ -75,6 +75,7 @@ impl ContactStage {
         Self {
             signal: Signal::new(
                 decoder.channels(),
+                decoder.is_clamped(),
                 decoder.scale().unwrap_or_else(Scale::unidentified),
                 filter_samples,
             ),

@@ -307,7 +307,7 @@ impl EvdevFrames {
 
     /// The force for a profile. A scale that ends below half a firm press is a share, whatever it is said to weigh: it would never press.
     fn force_n(&self, touching: &Touching, axis: u16, value: i32) -> f64 {
-        let range = self.tip.from_zero(&self.range(axis));
+        let range = self.tip.beyond_zero(&self.range(axis));
         let weight_n = |value: i32| f64::from(value.max(0)) / f64::from(range.resolution) * WEIGHT_N_PER_G;
         if range.resolution > 0 && weight_n(range.maximum) >= touching.full_n / 2.0 {
             weight_n(value) / touching.full_n * FULL_N

@@ -53,11 +53,11 @@ impl Tip {
 
     /// Whether a tip that tells this pressure touches, where the tablet says so.
     pub(super) fn touches(&self, pressure: i32, range: &AxisRange) -> bool {
-        self.zero.is_none_or(|_| self.from_zero(range).share(pressure) > TOUCH_SHARE)
+        self.zero.is_none_or(|_| self.beyond_zero(range).share(pressure) > TOUCH_SHARE)
     }
 
     /// The range of its pressure without what it tells in the air.
-    pub(super) fn from_zero(&self, range: &AxisRange) -> AxisRange {
+    pub(super) fn beyond_zero(&self, range: &AxisRange) -> AxisRange {
         AxisRange { minimum: self.zero.unwrap_or(range.minimum), ..*range }
     }
 }

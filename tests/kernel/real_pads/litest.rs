@@ -137,7 +137,7 @@ fn read(text: &str) -> Result<RealDevice, String> {
             ["EV_REL", axis] => device.relative.push(RelativeAxisCode::from_str(axis).map_err(|_| wrong())?),
             ["EV_MSC", misc] => device.misc.push(MiscCode::from_str(misc).map_err(|_| wrong())?),
             ["INPUT_PROP_MAX", property] => {
-                device.properties.push(self::property(property).ok_or_else(wrong)?)
+                device.properties.push(self::property(property).ok_or_else(wrong)?);
             }
             _ => {}
         }

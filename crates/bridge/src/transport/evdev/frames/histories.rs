@@ -231,7 +231,7 @@ impl Play {
                 Change::Button(BTN_TOUCH, is_down),
             ]),
             Happening::SideButton(is_down) if self.is_pen => {
-                self.tell(&[Change::Button(BTN_STYLUS, is_down)])
+                self.tell(&[Change::Button(BTN_STYLUS, is_down)]);
             }
             Happening::Finger { slot, place: [x, y], pressure, is_palm } if !self.is_pen => {
                 let mut changes = vec![Change::Axis(MT_SLOT, slot as i32)];

@@ -7,9 +7,9 @@ use super::{Act, Board, Person, SHOWN};
 /// Who stands still plays after so long, ms.
 const PLAYS_MS: u64 = 4_000;
 
-/// A zero that has jumped by less than a light touch weighs is put right after ten seconds. Who steps on in that very moment may be taken
-/// for it, and has to step on once more.
-const ZERO_MS: u64 = 11_000;
+/// A zero that has jumped by less than a light touch weighs is put right after ten seconds, and once more where that was measured under a
+/// load. Who steps on in the very moment when it is put right may be taken for it, and has to step on once more.
+const ZERO_MS: u64 = 25_000;
 
 /// What happens to a board.
 #[derive(Clone, Debug)]

@@ -96,10 +96,10 @@ impl Play {
         }
     }
 
-    /// Whether anything is held half a second after everybody has gone.
+    /// Whether nothing is held once everybody has gone, as late as a zero of a board that was taken up and put down is known anew.
     fn is_let_go(&mut self) -> bool {
         self.act(Act::StepOff);
-        self.board.load(0.0, [0.0; 2], 500);
+        self.board.load(0.0, [0.0; 2], PLAYS_MS);
         self.board.rig.is_neutral()
     }
 }

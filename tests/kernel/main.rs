@@ -30,6 +30,7 @@ mod pad;
 mod playing;
 mod program;
 mod reader;
+mod real_pads;
 mod scene;
 mod screen;
 mod sdl;
@@ -94,55 +95,113 @@ fn tablet_is_a_device_of_its_own_and_goes_where_the_finger_is() {
 
 #[test]
 fn pens_and_fingers_on_pads_that_people_own_play() {
-    in_guest("pens_and_fingers_on_pads_that_people_own_play", owned_pads::strokes);
+    in_guest("pens_and_fingers_on_pads_that_people_own_play", owned_pads::playing::strokes);
 }
 
 #[test]
 fn a_tablet_moves_no_pointer_while_it_plays_and_is_given_back() {
-    in_guest("a_tablet_moves_no_pointer_while_it_plays_and_is_given_back", owned_pads::grabbed);
+    in_guest("a_tablet_moves_no_pointer_while_it_plays_and_is_given_back", owned_pads::grab::grabbed);
 }
 
 #[test]
 fn owned_pads_hold_nothing_after_events_were_lost() {
-    in_guest("owned_pads_hold_nothing_after_events_were_lost", owned_pads::overflowed);
+    in_guest("owned_pads_hold_nothing_after_events_were_lost", owned_pads::grab::overflowed);
 }
 
 #[test]
 fn owned_pads_that_another_program_takes_let_go() {
-    in_guest("owned_pads_that_another_program_takes_let_go", owned_pads::taken);
+    in_guest("owned_pads_that_another_program_takes_let_go", owned_pads::grab::taken);
 }
 
 #[test]
 fn owned_pads_that_are_touched_at_the_start_leave_the_desktop_nothing_held() {
     in_guest(
         "owned_pads_that_are_touched_at_the_start_leave_the_desktop_nothing_held",
-        owned_pads::down_at_the_start,
+        owned_pads::grab::down_at_the_start,
     );
 }
 
 #[test]
 fn a_tablet_that_leaves_lets_go_and_comes_back() {
-    in_guest("a_tablet_that_leaves_lets_go_and_comes_back", owned_pads::replugged);
+    in_guest("a_tablet_that_leaves_lets_go_and_comes_back", owned_pads::playing::replugged);
 }
 
 #[test]
 fn owned_pads_are_known_at_another_node() {
-    in_guest("owned_pads_are_known_at_another_node", owned_pads::moved);
+    in_guest("owned_pads_are_known_at_another_node", owned_pads::playing::moved);
+}
+
+#[test]
+fn owned_pads_hold_nothing_and_play_after_any_history() {
+    in_guest("owned_pads_hold_nothing_and_play_after_any_history", owned_pads::histories::histories);
 }
 
 #[test]
 fn a_recorded_pen_replays_byte_for_byte() {
-    in_guest("a_recorded_pen_replays_byte_for_byte", owned_pads::recorded);
+    in_guest("a_recorded_pen_replays_byte_for_byte", owned_pads::playing::recorded);
 }
 
 #[test]
 fn a_cap_of_six_axes_plays() {
-    in_guest("a_cap_of_six_axes_plays", owned_pads::six_axes);
+    in_guest("a_cap_of_six_axes_plays", owned_pads::channels::six_axes);
 }
 
 #[test]
 fn a_board_of_four_cells_plays() {
-    in_guest("a_board_of_four_cells_plays", owned_pads::board);
+    in_guest("a_board_of_four_cells_plays", owned_pads::channels::board);
+}
+
+#[test]
+fn what_libinput_knows_of_devices_is_read_as_it_says() {
+    real_pads::litest::sources_are_read_as_they_say();
+}
+
+#[test]
+fn real_pads_give_the_contacts_that_their_numbers_say() {
+    if real_pads::are_there() {
+        in_guest(
+            "real_pads_give_the_contacts_that_their_numbers_say",
+            real_pads::contacts_are_those_of_the_numbers,
+        );
+    }
+}
+
+#[test]
+fn real_pads_without_pressure_and_other_nodes_are_not_offered() {
+    if real_pads::are_there() {
+        in_guest(
+            "real_pads_without_pressure_and_other_nodes_are_not_offered",
+            real_pads::others_are_not_offered,
+        );
+    }
+}
+
+#[test]
+fn real_pads_are_taken_from_the_desktop_and_given_back() {
+    if real_pads::are_there() {
+        in_guest("real_pads_are_taken_from_the_desktop_and_given_back", real_pads::grabbed_and_given_back);
+    }
+}
+
+#[test]
+fn quirks_of_real_pads_press_nothing() {
+    if real_pads::are_there() {
+        in_guest("quirks_of_real_pads_press_nothing", real_pads::quirks::quirks);
+    }
+}
+
+#[test]
+fn a_recorded_gesture_replays_byte_for_byte() {
+    if real_pads::are_there() {
+        in_guest("a_recorded_gesture_replays_byte_for_byte", real_pads::quirks::recorded);
+    }
+}
+
+#[test]
+fn nodes_of_real_pads_are_told_apart() {
+    if real_pads::are_there() {
+        in_guest("nodes_of_real_pads_are_told_apart", real_pads::nodes_are_told_apart);
+    }
 }
 
 #[test]

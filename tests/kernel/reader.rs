@@ -86,6 +86,7 @@ impl Reader {
                     assert_ne!(code, SynchronizationCode::SYN_DROPPED, "the reader was too slow");
                     continue;
                 }
+                EventSummary::Misc(..) => continue,
                 other => panic!("no such event was asked for: {other:?}"),
             };
             let at = event.timestamp().duration_since(UNIX_EPOCH).expect("a stamp after 1970");

@@ -16,6 +16,8 @@ use tactpad::source::{Measures, read, shipped};
 
 use crate::rig::{Rig, profile};
 
+mod histories;
+
 /// Standard gravity, N per kg.
 const N_PER_KG: f64 = 9.806_65;
 
@@ -192,6 +194,10 @@ fn wave(t_s: f64, from_s: f64, to_s: f64) -> f64 {
 }
 
 impl Person {
+    fn weight_n(&self) -> f64 {
+        self.mass_kg * N_PER_KG
+    }
+
     /// The force in weights and where it is, mm, `t_s` after an act began, at `since_s` of all.
     fn press(&self, act: Act, t_s: f64, since_s: f64) -> (f64, [f64; 2]) {
         let sway =
@@ -247,6 +253,8 @@ struct Board {
     half_mm: [f64; 2],
     n_per_count: f64,
     counts: [i32; 4],
+    /// What each cell reads of nothing, N.
+    zeros_n: [f64; 4],
 }
 
 impl Board {
@@ -255,7 +263,13 @@ impl Board {
         let Measures::Cells(_, reach) = read::read(text).0.unwrap().measures else { panic!("it has cells") };
         let mut rig = Rig::new(profile("board-standing"));
         rig.pipeline = Pipeline::new(playing(text.as_bytes()).unwrap(), profile("board-standing"));
-        let mut board = Self { rig, half_mm: reach.half_mm, n_per_count: reach.n_per_unit, counts: [0; 4] };
+        let mut board = Self {
+            rig,
+            half_mm: reach.half_mm,
+            n_per_count: reach.n_per_unit,
+            counts: [0; 4],
+            zeros_n: [0.0; 4],
+        };
         board.load(0.0, [0.0; 2], 600);
         board
     }
@@ -275,7 +289,8 @@ impl Board {
             let signs = [[-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
             let noise = [3, 7, 11, 13].map(|k| (u64::from(*sequence) * k % 17) as f64 * 0.1 - 0.8);
             let [along, up] = [x_mm / self.half_mm[0], y_mm / self.half_mm[1]];
-            for ((count, [right, upper]), noise_n) in self.counts.iter_mut().zip(signs).zip(noise) {
+            let zeros_n = self.zeros_n.iter().zip(noise).map(|(zero_n, noise_n)| zero_n + noise_n);
+            for ((count, [right, upper]), noise_n) in self.counts.iter_mut().zip(signs).zip(zeros_n) {
                 let cell_n = force_n * (1.0 + right * along) * (1.0 + upper * up) / 4.0 + noise_n;
                 // The driver knows nothing below a cell's zero.
                 *count = (cell_n / self.n_per_count).round().max(0.0) as i32;
@@ -285,6 +300,11 @@ impl Board {
         let mut bytes = [0; ENCODED_MAX];
         let length = encode_message(&Message::Channels(sample), &mut bytes);
         self.rig.bytes(&bytes[..length]);
+    }
+
+    /// It says nothing for so long.
+    fn stall(&mut self, ms: u64) {
+        self.rig.silence(ms);
     }
 
     /// Events while somebody does this.

@@ -21,6 +21,7 @@ use crate::requests::Requests;
 use crate::signals;
 use crate::snapshot::{Drops, Snapshot};
 use crate::snapshot_builder::{DecoderInfo, snapshot, state};
+use crate::transport::evdev::leave;
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::head::Head;
 use tactpad_core::pipeline::health::Health;
@@ -243,6 +244,10 @@ impl Bridge {
                 self.connection.on_unplugged(now);
                 return Ok(!self.connection.can_return());
             }
+        }
+        if self.connection.asks_pause() && self.driver.pipeline.phase() != Phase::Paused {
+            self.driver.call(now, Call::Pause)?;
+            self.host.tell(leave::PAUSED);
         }
         Ok(false)
     }

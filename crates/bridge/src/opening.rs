@@ -11,7 +11,7 @@ use crate::transport::Transport;
 use crate::transport::address::PadAddress;
 use crate::transport::evdev::EvdevOpener;
 use crate::transport::fault::{FaultPlan, FaultyLine};
-use crate::transport::lines::LinePort;
+use crate::transport::lines;
 use crate::transport::opener::{Opener, PadError};
 use crate::transport::playback::Playback;
 use crate::transport::virtual_pad::{PadFirmware, VirtualPadPort};
@@ -134,9 +134,8 @@ impl OpenedPad {
     /// # Errors
     /// The system has no more descriptors.
     pub fn with_lines(self, lines: &Lines) -> io::Result<Self> {
-        let lines = lines.clone();
-        let read =
-            move |port| -> io::Result<Box<dyn Transport>> { Ok(Box::new(LinePort::new(port, &lines)?)) };
+        let described = lines.clone();
+        let read = move |port| lines::framed(port, &described);
         let pad = self.pad.map(&read).transpose()?;
         let opener = self.opener.map(|mut open| -> Reopen {
             Box::new(move || read(open()?).map_err(|error| PadError::Unusable(error.to_string())))

@@ -140,6 +140,11 @@ impl PadConnection {
         }
     }
 
+    /// Whether the player asked on the pad itself to pause it; tells it once.
+    pub(super) fn asks_pause(&mut self) -> bool {
+        self.opened.pad.as_mut().is_some_and(|pad| pad.asks_pause())
+    }
+
     /// Closes the pad for good.
     pub(super) fn close(&mut self) {
         (self.opened.pad, self.opened.opener) = (None, None);

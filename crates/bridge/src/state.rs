@@ -22,6 +22,8 @@ pub enum State {
     Taring,
     /// The zero cannot be measured: something lies on the pad.
     Loaded,
+    /// Who is to stand on the pad was not weighed yet.
+    Unweighed,
     /// Contacts become events.
     Playing,
     /// A known weight is weighed, or lies there still.
@@ -47,6 +49,7 @@ impl State {
             (Phase::Waiting, None) => Self::Silent,
             (Phase::Taring, None) => Self::Taring,
             (Phase::Loaded, None) => Self::Loaded,
+            (Phase::Playing, None) if pipeline.awaits_weight() => Self::Unweighed,
             (Phase::Playing, None) => Self::Playing,
             (Phase::Weighing, None) => Self::Weighing,
             (Phase::Doubtful, None) => Self::Doubtful,
@@ -71,6 +74,7 @@ impl State {
             Self::Silent => "silent",
             Self::Taring => "taring",
             Self::Loaded => "loaded",
+            Self::Unweighed => "unweighed",
             Self::Playing => "playing",
             Self::Weighing => "weighing",
             Self::Doubtful => "doubtful",
@@ -93,6 +97,9 @@ impl State {
             Self::Silent => "the pad sends nothing that can be read: check its power and its line",
             Self::Taring => "measuring the zero: leave the pad untouched for a moment",
             Self::Loaded => "lift the finger: the zero is measured when nothing lies on the pad",
+            Self::Unweighed => {
+                "waits for you to stand still: a second on the board tells your weight, and nothing is pressed before"
+            }
             Self::Playing => "playing",
             Self::Weighing => {
                 "weighing: nothing is pressed before the weight was put down and taken away again"

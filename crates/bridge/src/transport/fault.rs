@@ -315,6 +315,10 @@ impl Transport for FaultyLine {
         self.line.pause(is_paused);
     }
 
+    fn asks_pause(&mut self) -> bool {
+        self.line.asks_pause()
+    }
+
     fn finding(&self) -> Option<LineFinding> {
         self.line.finding()
     }

@@ -3,6 +3,7 @@
 pub mod address;
 pub mod evdev;
 pub mod fault;
+mod framed;
 pub mod hid;
 pub mod lines;
 pub mod opener;
@@ -38,6 +39,11 @@ pub trait Transport {
 
     /// The player paused, or went on: a device that was taken from the desktop is given back meanwhile.
     fn pause(&mut self, _is_paused: bool) {}
+
+    /// Whether the player asked on the pad itself to pause it; tells it once.
+    fn asks_pause(&mut self) -> bool {
+        false
+    }
 
     /// What is wrong with what the pad sends, where it is no frames that are sent; the pipeline finds the rest.
     fn finding(&self) -> Option<LineFinding> {

@@ -113,6 +113,11 @@ impl Pipeline {
         self.refusal.as_ref()
     }
 
+    /// Whether nobody was weighed yet on a pad that somebody is to stand on.
+    pub const fn awaits_weight(&self) -> bool {
+        self.stage.awaits_weight()
+    }
+
     /// What the pipeline is doing.
     pub fn phase(&self) -> Phase {
         match self.phase {

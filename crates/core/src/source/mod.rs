@@ -210,6 +210,8 @@ impl Source {
             count_bits: COUNT_BITS,
             channels,
             noise_n: noise_n * plate_n_per_n,
+            // Drivers of input devices know no number below an axis' range.
+            is_clamped: matches!(self.origin, Origin::Evdev(_)),
             standing_n,
         };
         Balance::new(&numbers).map(Decoder::from)

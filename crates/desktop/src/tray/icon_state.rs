@@ -31,7 +31,7 @@ impl IconState {
             | State::Faulty
             | State::Refused => Self::Fault,
             State::Paused => Self::Paused,
-            State::Taring | State::Weighing => Self::Idle,
+            State::Taring | State::Unweighed | State::Weighing => Self::Idle,
             State::Playing if !status.held.is_empty() => Self::Pressed,
             State::Playing if status.contact.is_some() => Self::Contact,
             State::Playing => Self::Idle,

@@ -11,9 +11,9 @@ use crate::cli::playing::source;
 use tactpad::bridge::bridge_parts::PlayingDecoder;
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
 use tactpad::bridge::transport::address::PadAddress;
-use tactpad::bridge::transport::evdev::EvdevOpener;
+use tactpad::bridge::transport::evdev::{EvdevOpener, leave};
 use tactpad::firmware_proto::DEFAULT_BAUD;
-use tactpad::source::{Origin, Source};
+use tactpad::source::{Measures, Origin, Source};
 
 /// The description of a pad.
 #[derive(Debug, Args)]
@@ -144,6 +144,15 @@ impl DescribedPad {
     /// Its description.
     pub(super) fn source(&self) -> Arc<Source> {
         Arc::clone(&self.source)
+    }
+
+    /// How the player gives it back to the desktop without a keyboard, if it is taken from it.
+    pub(super) fn leave(&self) -> Option<&'static str> {
+        let takes = matches!(&self.source.origin, Origin::Evdev(evdev) if evdev.grabs) && !self.keeps_pointer;
+        match &self.source.measures {
+            Measures::Contact(touching) if takes => Some(leave::how(touching)),
+            _ => None,
+        }
     }
 
     /// Opens it.

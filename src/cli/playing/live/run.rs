@@ -100,6 +100,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         say(missing);
     }
     audience.tell(&title);
+    if let Some(leave) = described.as_ref().and_then(DescribedPad::leave) {
+        audience.tell(leave);
+    }
     let requests = requests(Some(runtime::socket_path(arguments.name.as_ref())), audience)?;
     let mut prepared = arguments.shown.prepare(&requests, &selection, output.choice())?;
     if let Some(url) = &prepared.url {

@@ -1,32 +1,33 @@
 //! A pad that is an input device of the system: its events become frames here, so that everything behind hears one language.
 
+mod axis;
 mod balance_board;
 pub mod battery;
 pub mod beside;
+mod fingers;
 pub mod found;
 mod frames;
+pub mod leave;
 mod reports;
+mod tip;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
-use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::fd::{AsFd, BorrowedFd};
 use std::path::{Path, PathBuf};
 
 use ::evdev::raw_stream::RawDevice;
 use ::evdev::{AbsInfo, AbsoluteAxisCode, EventType, InputEvent, SynchronizationCode};
-use firmware_proto::command::Command;
-use rustix::event::epoll;
 use rustix::fs::{Mode, OFlags};
-use rustix::time::{
-    Itimerspec, TimerfdClockId, TimerfdFlags, TimerfdTimerFlags, timerfd_create, timerfd_settime,
-};
 use tactpad_core::source::{Evdev, Origin, Reports, Source};
 
 use super::Transport;
+use super::framed::{Framed, FramedPort};
 use super::opener::PadError;
-use super::pacing::{is_readable, limit, monotonic_us};
+use super::pacing::is_readable;
+use axis::AxisRange;
 use found::{FoundDevice, attached, reading_command};
-use frames::{AxisRange, Change, EvdevFrames};
+use frames::{Change, EvdevFrames};
 use reports::{Heard, ReportReader};
 
 /// Reads at once after events were lost: more than the kernel's queue of a device holds.
@@ -36,11 +37,8 @@ const DRAIN_READS_MAX: usize = 64;
 /// the device, and the lift with it.
 const CHECK_US: u64 = 100_000;
 
-/// A timer of 0 never fires.
-const NEVER: u64 = 0;
-
 /// An open input device.
-pub struct EvdevPort {
+struct EvdevPort {
     device: RawDevice,
     /// The device's own reports, which say what its axes would say if they said all.
     reports: Option<ReportReader>,
@@ -51,16 +49,9 @@ pub struct EvdevPort {
     is_lost: bool,
     /// Whether it is to be taken from the desktop as soon as nothing on it is down: who takes it gets the releases.
     wants_grab: bool,
-    /// When the true state was asked last.
+    /// When the true state was asked last, and whether it was another one than what was told.
     checked_us: u64,
-    /// When it was opened, by the monotonic clock: frames count from there.
-    origin_us: u64,
-    /// Frames that were not read yet.
-    out: Vec<u8>,
-    is_gone: bool,
-    /// Readable while `device` or `timer` is: so a poll sees both.
-    either: OwnedFd,
-    timer: OwnedFd,
+    is_suspected: bool,
 }
 
 /// Opens a described device again and again, and remembers which one it was.
@@ -96,7 +87,7 @@ impl EvdevOpener {
         }
         let reports = wanted.reports.and_then(|Reports::BalanceBoard| ReportReader::open(&path));
         let port = EvdevPort::new(device, reports, &self.source, wanted, self.grabs);
-        match port {
+        match port.and_then(FramedPort::new) {
             Ok(port) => {
                 // A link that is named, as those in /dev/input/by-id, says by itself which device is meant.
                 self.last = (!path.is_symlink()).then_some(found);
@@ -186,13 +177,6 @@ impl EvdevPort {
         wanted: &Evdev,
         grabs: bool,
     ) -> io::Result<Self> {
-        let either = epoll::create(epoll::CreateFlags::CLOEXEC)?;
-        let timer =
-            timerfd_create(TimerfdClockId::Monotonic, TimerfdFlags::CLOEXEC | TimerfdFlags::NONBLOCK)?;
-        let of_reports = reports.iter().flat_map(ReportReader::fds);
-        for fd in [device.as_fd(), timer.as_fd()].into_iter().chain(of_reports) {
-            epoll::add(&either, fd, epoll::EventData::new_u64(0), epoll::EventFlags::IN)?;
-        }
         let mut port = Self {
             device,
             reports,
@@ -201,44 +185,17 @@ impl EvdevPort {
             is_lost: true,
             wants_grab: grabs,
             checked_us: 0,
-            origin_us: monotonic_us(),
-            out: Vec::new(),
-            is_gone: false,
-            either,
-            timer,
+            is_suspected: false,
         };
         port.synchronize()?;
-        port.grab_if_untouched()?;
-        port.set_timer()?;
+        port.grab_if_untouched(0)?;
         Ok(port)
     }
 
-    /// Takes what the device has reported by `now_us`.
-    fn take(&mut self, now_us: u64) -> io::Result<()> {
-        // What is not handed over yet comes first: a device that floods must not fill the memory.
-        if self.is_gone || !self.out.is_empty() {
-            return Ok(());
-        }
-        if self.hear(now_us).is_err() {
-            self.leave()?;
-        }
-        Ok(())
-    }
-
-    /// The device is gone, or another program has it.
-    fn leave(&mut self) -> io::Result<()> {
-        if !self.is_gone {
-            self.is_gone = true;
-            // One that is gone is readable for ever.
-            self.reports = None;
-            epoll::delete(&self.either, self.device.as_fd())?;
-        }
-        self.set_timer()
-    }
-
-    fn hear(&mut self, now_us: u64) -> io::Result<()> {
-        self.hear_reports(now_us)?;
+    fn hear(&mut self, now_us: u64, out: &mut Vec<u8>) -> io::Result<()> {
+        self.hear_reports(now_us, out)?;
         if !self.is_lost && is_readable(self.device.as_fd())? {
+            self.is_suspected = false;
             for event in available(&mut self.device)? {
                 match change(event) {
                     Some(Change::Lost) => {
@@ -246,30 +203,33 @@ impl EvdevPort {
                         break;
                     }
                     Some(Change::Axis(..) | Change::End) if self.reports.is_some() => {}
-                    Some(change) => self.frames.take(now_us, change, &mut self.out),
+                    Some(change) => self.frames.take(now_us, change, out),
                     None => {}
                 }
             }
-        } else if self.frames.is_anything_down() && self.checked_us + CHECK_US <= now_us {
+        } else if !self.frames.down().is_empty() && self.checked_us + CHECK_US <= now_us {
             self.checked_us = now_us;
-            self.is_lost |= self.down()? != *self.frames.down();
+            let is_unlike = self.frames.is_unlike(&self.down()?, &self.ranges()?);
+            // What is being reported just now is true before it can be read: only what stays unlike was lost.
+            self.is_lost |= is_unlike && self.is_suspected;
+            self.is_suspected = is_unlike;
         }
         if self.is_lost {
             self.synchronize()?;
             if !self.is_lost && !self.is_unheard() {
-                self.frames.take(now_us, Change::End, &mut self.out);
+                self.frames.take(now_us, Change::End, out);
             }
         }
-        self.grab_if_untouched()
+        self.grab_if_untouched(now_us)
     }
 
     /// Takes what the device's own reports say by `now_us`. Where they say nothing that can be used, its axes are taken.
-    fn hear_reports(&mut self, now_us: u64) -> io::Result<()> {
+    fn hear_reports(&mut self, now_us: u64, out: &mut Vec<u8>) -> io::Result<()> {
         match self.reports.as_mut().map(ReportReader::hear).transpose()? {
             Some(Heard::Axes(axes)) => {
                 let changes = axes.map(|(axis, value)| Change::Axis(axis, value));
                 let state = changes.into_iter().chain([Change::End]);
-                state.for_each(|change| self.frames.take(now_us, change, &mut self.out));
+                state.for_each(|change| self.frames.take(now_us, change, out));
             }
             Some(Heard::Unknown) => {
                 self.reports = None;
@@ -286,13 +246,13 @@ impl EvdevPort {
     }
 
     /// Takes the device from the desktop, if that is wanted and nothing on it is down.
-    fn grab_if_untouched(&mut self) -> io::Result<()> {
+    fn grab_if_untouched(&mut self, now_us: u64) -> io::Result<()> {
         let is_due = self.wants_grab && !self.device.is_grabbed();
-        if !is_due || self.is_lost || self.frames.is_anything_down() || is_readable(self.device.as_fd())? {
+        if !is_due || self.is_lost || self.frames.is_in_use(now_us) || is_readable(self.device.as_fd())? {
             return Ok(());
         }
         // The kernel may know better than what was read.
-        self.is_lost = !self.down()?.is_empty();
+        self.is_lost = self.down()? != *self.frames.down();
         if self.is_lost { Ok(()) } else { self.device.grab() }
     }
 
@@ -328,17 +288,6 @@ impl EvdevPort {
         };
         Ok(self.device.get_absinfo()?.map(range).collect())
     }
-
-    /// Lets the descriptor poll readable when the state is to be sent again, or at once if more is to be done.
-    fn set_timer(&self) -> io::Result<()> {
-        let is_more = !self.out.is_empty() || self.is_gone || self.is_lost;
-        let due_us = self.frames.due_us().filter(|_| !self.is_unheard());
-        let due_us = due_us.map_or(NEVER, |due_us| self.origin_us + due_us);
-        let due_us = if is_more { 1 } else { due_us };
-        let timer = Itimerspec { it_interval: limit(0), it_value: limit(due_us) };
-        timerfd_settime(&self.timer, TimerfdTimerFlags::ABSTIME, &timer)?;
-        Ok(())
-    }
 }
 
 /// The events that can be read at once; none where another reader was faster.
@@ -365,42 +314,30 @@ fn change(event: InputEvent) -> Option<Change> {
     }
 }
 
-impl Transport for EvdevPort {
-    fn fd(&self) -> BorrowedFd<'_> {
-        self.either.as_fd()
+impl Framed for EvdevPort {
+    fn fds(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
+        std::iter::once(self.device.as_fd()).chain(self.reports.iter().flat_map(ReportReader::fds))
     }
 
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let now_us = monotonic_us().saturating_sub(self.origin_us);
-        self.take(now_us)?;
-        if !self.is_gone && !self.is_lost && !self.is_unheard() {
-            self.frames.repeat(now_us, &mut self.out);
+    fn take(&mut self, now_us: u64, out: &mut Vec<u8>) -> io::Result<()> {
+        self.hear(now_us, out)?;
+        if !self.is_lost && !self.is_unheard() {
+            self.frames.repeat(now_us, out);
         }
-        let count = self.out.len().min(bytes.len());
-        bytes.iter_mut().zip(self.out.drain(..count)).for_each(|(to, from)| *to = from);
-        self.set_timer()?;
-        match (count, self.is_gone) {
-            (0, true) => Err(io::Error::new(
-                io::ErrorKind::BrokenPipe,
-                "the device was unplugged, or another program took it",
-            )),
-            (0, false) => Err(io::ErrorKind::WouldBlock.into()),
-            (count, _) => Ok(count),
-        }
-    }
-
-    /// Does nothing: an input device takes no commands of ours.
-    fn send(&mut self, _command: &Command) -> io::Result<()> {
         Ok(())
     }
 
-    fn pause(&mut self, is_paused: bool) {
+    fn due_us(&self) -> Option<u64> {
+        if self.is_lost { Some(0) } else { self.frames.due_us().filter(|_| !self.is_unheard()) }
+    }
+
+    fn pause(&mut self, now_us: u64, is_paused: bool) -> io::Result<()> {
         self.wants_grab = self.grabs && !is_paused;
-        let done = if is_paused { self.device.ungrab() } else { self.grab_if_untouched() };
-        if done.is_err() {
-            // Who reads next is told.
-            drop(self.leave());
-        }
+        if is_paused { self.device.ungrab() } else { self.grab_if_untouched(now_us) }
+    }
+
+    fn asks_pause(&mut self) -> bool {
+        self.frames.take_leave() && self.grabs
     }
 }
 

@@ -26,6 +26,7 @@ pub struct Balance {
     /// Standard deviation of each channel, µV.
     noise_uv: f64,
     has_shear: bool,
+    is_clamped: bool,
     standing_n: Option<f32>,
 }
 
@@ -43,6 +44,8 @@ pub struct BalanceNumbers {
     pub channels: Vec<[f64; ROWS]>,
     /// Standard deviation of a channel, N on the plate.
     pub noise_n: f64,
+    /// Whether 0 is the least that a channel tells, whatever it would read below.
+    pub is_clamped: bool,
     /// What the weight of who stands on the pad is for a profile, N; `None` where forces are absolute.
     pub standing_n: Option<f64>,
 }
@@ -50,7 +53,7 @@ pub struct BalanceNumbers {
 impl Balance {
     /// A decoder of one to eight channels; `None` for another number of them, and for numbers that are not finite.
     pub fn new(numbers: &BalanceNumbers) -> Option<Self> {
-        let BalanceNumbers { n_per_count, count_bits, channels, noise_n, standing_n } = numbers;
+        let BalanceNumbers { n_per_count, count_bits, channels, noise_n, is_clamped, standing_n } = numbers;
         let all = channels.as_flattened().iter().chain([n_per_count, noise_n]).chain(standing_n);
         let is_sound = (1..CHANNELS).contains(&channels.len()) && { all }.all(|number| number.is_finite());
         let mut rows = [[0.0; CHANNELS]; ROWS];
@@ -64,9 +67,15 @@ impl Balance {
             scale: Scale { uv_per_count: n_per_count * UV_PER_N, count_bits: *count_bits },
             noise_uv: noise_n * UV_PER_N,
             has_shear: rows.iter().take(FZ).flatten().any(|per_uv| *per_uv != 0.0),
+            is_clamped: *is_clamped,
             standing_n: standing_n.map(|n| n as f32),
             rows,
         })
+    }
+
+    /// Whether 0 is the least that a channel tells, whatever it would read below.
+    pub const fn is_clamped(&self) -> bool {
+        self.is_clamped
     }
 
     /// Number of channels.
@@ -164,6 +173,7 @@ mod tests {
             count_bits: 32,
             channels,
             noise_n: 0.01,
+            is_clamped: false,
             standing_n: None,
         })
         .unwrap()
@@ -224,6 +234,7 @@ mod tests {
             count_bits: 32,
             channels: vec![[0.0, 0.0, 1.0, 0.0, 0.0]],
             noise_n: 0.0,
+            is_clamped: false,
             standing_n: None,
         };
         assert!(Balance::new(&one).is_some());

@@ -164,6 +164,11 @@ impl Decoder {
         }
     }
 
+    /// Whether 0 is the least that a channel tells, whatever it would read below.
+    pub const fn is_clamped(&self) -> bool {
+        matches!(&self.method, Method::Balance(balance) if balance.is_clamped())
+    }
+
     /// What the weight of who stands on the pad is for a profile, N, where forces are relative to it.
     pub const fn standing_n(&self) -> Option<f32> {
         match &self.method {

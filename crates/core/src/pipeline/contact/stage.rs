@@ -75,6 +75,7 @@ impl ContactStage {
         Self {
             signal: Signal::new(
                 decoder.channels(),
+                decoder.is_clamped(),
                 decoder.scale().unwrap_or_else(Scale::unidentified),
                 filter_samples,
             ),
@@ -130,6 +131,11 @@ impl ContactStage {
     /// Warning about the touch at hand or the last one; only the inverse decoder tells it.
     pub const fn warning(&self) -> Option<Warning> {
         self.watch.warning()
+    }
+
+    /// Whether nobody was weighed yet on a pad that somebody is to stand on.
+    pub const fn awaits_weight(&self) -> bool {
+        self.standing.awaits_weight()
     }
 
     /// Decoder in use.

@@ -91,6 +91,11 @@ impl Standing {
         Some(self.standing_n? / self.stance?.weight_n)
     }
 
+    /// Whether nobody was weighed yet on a pad that somebody is to stand on.
+    pub const fn awaits_weight(&self) -> bool {
+        self.standing_n.is_some() && self.stance.is_none()
+    }
+
     /// Nobody stands there any more, or it is not known who. In doubt it is who stood there before.
     pub fn interrupt(&mut self, effect: Effect) {
         if effect != Effect::Keep {

@@ -18,6 +18,8 @@ const STUCK_SAMPLES: u16 = 64;
 pub struct ChannelFaults {
     /// Those that the pad has.
     channels: usize,
+    /// Whether 0 is the least that they tell, whatever they would read below.
+    is_clamped: bool,
     last: Option<[i32; CHANNELS]>,
     unchanged: [u16; CHANNELS],
     seen: u32,
@@ -29,15 +31,16 @@ pub struct ChannelFaults {
 
 impl Default for ChannelFaults {
     fn default() -> Self {
-        Self::new(CHANNELS)
+        Self::new(CHANNELS, false)
     }
 }
 
 impl ChannelFaults {
-    /// Knows nothing yet of a pad with so many channels; every one counts as sound.
-    pub const fn new(channels: usize) -> Self {
+    /// Knows nothing yet of a pad with so many channels, of which 0 may be the least that they tell; every one counts as sound.
+    pub const fn new(channels: usize, is_clamped: bool) -> Self {
         Self {
             channels,
+            is_clamped,
             last: None,
             unchanged: [0; CHANNELS],
             seen: 0,
@@ -100,8 +103,11 @@ impl ChannelFaults {
     }
 
     fn check_stuck(&mut self, health: &mut Health) -> bool {
-        for (&unchanged, stuck) in self.unchanged.iter().zip(self.stuck.iter_mut()).take(self.channels) {
-            let now = self.noisy_pad && unchanged >= STUCK_SAMPLES;
+        let last = self.last.unwrap_or_default();
+        let channels = self.unchanged.iter().zip(last).zip(self.stuck.iter_mut()).take(self.channels);
+        for ((&unchanged, last), stuck) in channels {
+            let is_below = self.is_clamped && last == 0;
+            let now = self.noisy_pad && unchanged >= STUCK_SAMPLES && !is_below;
             health.channels_stuck += u64::from(now && !*stuck);
             *stuck = now;
         }
@@ -126,7 +132,7 @@ mod tests {
 
     /// A detector that has watched 300 samples at rest, and what it said of the next 100.
     fn run(rest_silent: &[usize], play_silent: &[usize]) -> (Vec<bool>, Health) {
-        let (mut faults, mut health) = (ChannelFaults::new(CHANNELS), Health::default());
+        let (mut faults, mut health) = (ChannelFaults::new(CHANNELS, false), Health::default());
         for i in 0..300 {
             faults.check(&sample(i, rest_silent), 24, &mut health);
         }
@@ -148,6 +154,23 @@ mod tests {
     }
 
     #[test]
+    fn a_channel_below_what_it_can_tell_is_not_stuck() {
+        let found = |is_clamped, stands_at: i32| {
+            let (mut faults, mut health) = (ChannelFaults::new(CHANNELS, is_clamped), Health::default());
+            for i in 0..300 {
+                faults.check(&sample(i, &[]), 24, &mut health);
+            }
+            faults.learn();
+            (300..400).any(|i| {
+                let mut sample = sample(i, &[]);
+                sample.counts[4] = stands_at;
+                faults.check(&sample, 24, &mut health)
+            })
+        };
+        assert!(!found(true, 0) && found(true, 7) && found(false, 0));
+    }
+
+    #[test]
     fn a_pad_without_noise_is_not_accused() {
         let all: Vec<usize> = (0..CHANNELS).collect();
         let (said, health) = run(&all, &[4]);
@@ -157,7 +180,7 @@ mod tests {
 
     #[test]
     fn the_ends_of_the_range_are_saturation_and_count_once() {
-        let (mut faults, mut health) = (ChannelFaults::new(CHANNELS), Health::default());
+        let (mut faults, mut health) = (ChannelFaults::new(CHANNELS, false), Health::default());
         let top = (1 << 23) - 1;
         for (count, saturated) in
             [(top - 1, false), (top, true), (top, true), (1 - top, false), (-top - 1, true)]
@@ -171,7 +194,7 @@ mod tests {
 
     #[test]
     fn the_full_range_of_32_bits_is_allowed() {
-        let (mut faults, mut health) = (ChannelFaults::new(CHANNELS), Health::default());
+        let (mut faults, mut health) = (ChannelFaults::new(CHANNELS, false), Health::default());
         let mut sample = sample(0, &[]);
         sample.counts[0] = i32::MAX - 1;
         assert!(!faults.check(&sample, 32, &mut health));

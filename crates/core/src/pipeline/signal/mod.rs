@@ -78,20 +78,23 @@ pub struct Signal {
     untold_scale: Scale,
     /// Those that the pad has; the others are zero.
     channels: usize,
+    /// Whether 0 is the least that they tell, whatever they would read below.
+    is_clamped: bool,
     faults: ChannelFaults,
     filter: MeanFilter,
     tare: Tare,
 }
 
 impl Signal {
-    /// A stage that has seen nothing of a pad with so many channels: it measures its zero first. `untold_scale` holds unless the pad
-    /// tells another, and `filter_samples` is the mean filter's window.
-    pub fn new(channels: usize, untold_scale: Scale, filter_samples: usize) -> Self {
+    /// A stage that has seen nothing of a pad with so many channels, of which 0 may be the least that they tell: it measures its zero first.
+    /// `untold_scale` holds unless the pad tells another, and `filter_samples` is the mean filter's window.
+    pub fn new(channels: usize, is_clamped: bool, untold_scale: Scale, filter_samples: usize) -> Self {
         Self {
             scale: untold_scale,
             untold_scale,
             channels,
-            faults: ChannelFaults::new(channels),
+            is_clamped,
+            faults: ChannelFaults::new(channels, is_clamped),
             filter: MeanFilter::new(filter_samples),
             tare: Tare::new(channels < CHANNELS),
         }
@@ -122,7 +125,7 @@ impl Signal {
         match channels {
             Effect::Keep => {}
             Effect::Doubt => self.faults.forget_rest(),
-            Effect::Forget => self.faults = ChannelFaults::new(self.channels),
+            Effect::Forget => self.faults = ChannelFaults::new(self.channels, self.is_clamped),
         }
         if filter == Effect::Forget {
             self.filter.clear();

@@ -45,7 +45,7 @@ const fn reached(state: State) -> usize {
         State::Waiting | State::Unclear => 0,
         State::Denied => 1,
         State::Silent | State::Taring | State::Loaded | State::Refused | State::Faulty | State::Paused => 2,
-        State::Playing | State::Weighing | State::Doubtful => 3,
+        State::Unweighed | State::Playing | State::Weighing | State::Doubtful => 3,
     }
 }
 

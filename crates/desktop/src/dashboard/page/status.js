@@ -5,7 +5,7 @@ import { get, post } from "./api.js";
 import { button, el, number, row, say, scroller, set, table } from "./dom.js";
 import { duration } from "./latency.js";
 
-const SIGNS = { playing: "▶", paused: "❚❚", taring: "◌", weighing: "◌", waiting: "…", loaded: "⚠", doubtful: "⚠", denied: "✕", unclear: "⚠", silent: "⚠", faulty: "✕", refused: "✕" };
+const SIGNS = { playing: "▶", paused: "❚❚", taring: "◌", unweighed: "◌", weighing: "◌", waiting: "…", loaded: "⚠", doubtful: "⚠", denied: "✕", unclear: "⚠", silent: "⚠", faulty: "✕", refused: "✕" };
 const GOOD = new Set(["playing"]);
 const BAD = new Set(["denied", "faulty", "refused"]);
 

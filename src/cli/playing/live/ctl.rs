@@ -161,7 +161,8 @@ fn print_status(status: &Value) -> io::Result<()> {
     let mut out = stdout();
     let text = |key: &str| status.get(key).and_then(Value::as_str).map_or("unknown".into(), printable);
     writeln!(out, "state    {}", text("state"))?;
-    writeln!(out, "pad      {}", text("pad"))?;
+    let serial = status.get("pad").and_then(Value::as_str);
+    writeln!(out, "pad      {}", serial.map_or("tells no serial number".into(), printable))?;
     writeln!(out, "profile  {}: {}", text("profile"), text("profile_reason"))?;
     if status.get("preview").and_then(Value::as_bool) == Some(true) {
         writeln!(out, "         changed for a try in the dashboard; it is not kept")?;

@@ -359,6 +359,23 @@ fn one_after_the_other_plays_on_the_same_board() {
 }
 
 #[test]
+fn what_lay_on_a_board_whose_zero_has_jumped_holds_nothing_once_it_has_gone() {
+    let mut board = Board::new();
+    let (none, jumped) = ([-1e3; 4], [7.746_135, 13.791_787, 14.591_550, 12.095_175]);
+    let loads = [
+        (none, 0.0, 0.0, 20),
+        (jumped, 59.294_314, -143.097_157, 1_020),
+        (jumped, 42.829_300, 0.0, 30),
+        (jumped, 0.0, 0.0, 4_000),
+    ];
+    for (zeros_n, force_n, x_mm, ms) in loads {
+        board.zeros_n = zeros_n;
+        board.load(force_n, [x_mm, 0.0], ms);
+    }
+    assert!(board.rig.is_neutral());
+}
+
+#[test]
 fn a_jump_ends_in_nothing_that_is_held_and_keeps_the_weight() {
     for person in &SHOWN {
         let mut board = Board::new();

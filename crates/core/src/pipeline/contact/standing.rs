@@ -119,8 +119,10 @@ impl Standing {
         window.sums.iter_mut().zip([x_mm, y_mm, fz_n]).for_each(|(sum, value)| *sum += f64::from(value));
         window.samples += 1;
         let is_over = at.us_since(window.since) >= STILL_US;
-        if let Some(stance) = window.stance().filter(|stance| is_over && self.is_news(stance)) {
-            self.stance = Some(stance);
+        if let Some(found) = window.stance().filter(|_| is_over) {
+            // What stands still and is too light for a person says that whoever stood there has gone.
+            let is_person = found.weight_n >= WEIGHT_MIN_N;
+            self.stance = if self.is_news(&found) { Some(found) } else { self.stance }.filter(|_| is_person);
         }
         self.window = (!is_over).then_some(window);
     }
@@ -131,7 +133,7 @@ impl Standing {
             let apart_n = (found.weight_n - known.weight_n).abs();
             apart_n > STILL_SHARE * known.weight_n
         };
-        found.weight_n >= WEIGHT_MIN_N && self.stance.is_none_or(is_other)
+        self.stance.is_none_or(is_other)
     }
 }
 
@@ -214,6 +216,14 @@ mod tests {
         assert_eq!(seen(&mut Standing::new(Some(2.0)), &[(3_000, 1.9, [0.0; 2])]), [None]);
         let absolute = seen(&mut Standing::new(None), &[(10, 1.9, [4.0, 5.0])]);
         assert_eq!(absolute, [Some(Contact { x_mm: 4.0, y_mm: 5.0, fz_n: 1.9, ..Contact::default() })]);
+    }
+
+    #[test]
+    fn who_leaves_a_light_thing_behind_has_left() {
+        let mut standing = Standing::new(Some(2.0));
+        let found =
+            seen(&mut standing, &[(1_100, 4.0, [0.0; 2]), (900, 1.5, [0.0; 2]), (200, 1.5, [0.0; 2])]);
+        assert_eq!(forces_n(&found), [Some(2.0), Some(0.75), None]);
     }
 
     #[test]

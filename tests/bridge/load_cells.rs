@@ -15,12 +15,10 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 
 use rustix::event::{PollFd, Timespec, poll};
-use rustix::fs::{Mode, OFlags};
 use rustix::process::Signal;
-use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use tactpad::numeric::random::SplitMix64;
 
+use crate::pseudo_terminal;
 use crate::running::{Running, comes_true};
 
 const TACTPAD: &str = env!("CARGO_BIN_EXE_tactpad");
@@ -70,15 +68,7 @@ fn pause(us: i64) {
 
 /// A new terminal behind the path `link`.
 fn terminal(link: &Path) -> OwnedFd {
-    let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
-    grantpt(&master).unwrap();
-    unlockpt(&master).unwrap();
-    rustix::io::ioctl_fionbio(&master, true).unwrap();
-    let path = ptsname(&master, Vec::new()).unwrap().into_string().unwrap();
-    let slave = rustix::fs::open(&path, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
-    let mut mode = tcgetattr(&slave).unwrap();
-    mode.make_raw();
-    tcsetattr(&slave, OptionalActions::Now, &mode).unwrap();
+    let (master, path) = pseudo_terminal::open();
     let _ = fs::remove_file(link);
     symlink(path, link).unwrap();
     master

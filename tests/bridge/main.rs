@@ -25,6 +25,8 @@ mod programs;
 #[cfg(test)]
 #[path = "../support/proof.rs"]
 mod proof;
+#[path = "../support/pseudo_terminal.rs"]
+mod pseudo_terminal;
 mod reload;
 mod replay;
 mod running;

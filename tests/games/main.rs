@@ -22,6 +22,8 @@ mod owned;
 mod pads;
 mod pictures;
 mod player;
+#[path = "../support/pseudo_terminal.rs"]
+mod pseudo_terminal;
 mod reaction;
 mod scroll;
 mod segment;

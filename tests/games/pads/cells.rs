@@ -3,14 +3,12 @@
 use std::collections::VecDeque;
 use std::os::fd::OwnedFd;
 
-use rustix::fs::{Mode, OFlags};
-use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use tactpad::numeric::random::SplitMix64;
 use tactpad::quantity::Contact;
 use tactpad::source::{FULL_N, Measures, Reach, read, shipped};
 
 use super::{Device, PLATE_MM};
+use crate::pseudo_terminal;
 
 /// Upper left, upper right, lower left, lower right: the side to the right, and up.
 const SIDES: [[f64; 2]; 4] = [[-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
@@ -85,7 +83,7 @@ pub(super) struct Cells {
 impl Cells {
     pub(super) fn new(mut random: SplitMix64, lines_per_s: u64) -> Self {
         let cells = FourCells::new("load-cells", &mut random, ERRORS);
-        let (terminal, path) = terminal();
+        let (terminal, path) = pseudo_terminal::open();
         let period_us = 1_000_000 / lines_per_s;
         Self { cells, terminal, path, period_us, loads_n: VecDeque::new(), since_us: 0 }
     }
@@ -123,18 +121,4 @@ impl Device for Cells {
             self.print();
         }
     }
-}
-
-/// A new terminal that passes bytes as they are, and the path of its other end.
-fn terminal() -> (OwnedFd, String) {
-    let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
-    grantpt(&master).unwrap();
-    unlockpt(&master).unwrap();
-    rustix::io::ioctl_fionbio(&master, true).unwrap();
-    let path = ptsname(&master, Vec::new()).unwrap().into_string().unwrap();
-    let slave = rustix::fs::open(&path, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
-    let mut mode = tcgetattr(&slave).unwrap();
-    mode.make_raw();
-    tcsetattr(&slave, OptionalActions::Now, &mode).unwrap();
-    (master, path)
 }

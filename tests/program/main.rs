@@ -11,6 +11,7 @@ mod diagnose;
 mod diagnose_play;
 mod diagnose_report;
 mod docs;
+mod driven_load;
 #[cfg(target_os = "linux")]
 mod hints;
 #[cfg(target_os = "linux")]

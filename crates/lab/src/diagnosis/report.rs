@@ -228,8 +228,15 @@ pub struct NotDetected {
 pub struct NotTestable {
     /// The cause.
     pub effect: Effect,
-    /// The column that is missing, or stays the same.
+    /// The column that is missing or stays the same, or what else is missing, in words.
     pub needs: &'static str,
+}
+
+impl NotTestable {
+    /// Whether a column is missing.
+    pub fn needs_column(needs: &str) -> bool {
+        !needs.contains(' ')
+    }
 }
 
 /// Gain of the findings on rows that had no part in finding them.

@@ -6,7 +6,7 @@ use super::numbers::{decoded, estimate, percent, range};
 use crate::cli::printing::wrapped::hanging;
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::{
-    CommonGain, Diagnosis, Finding, Gain, NotDetected, Proposal, Verdict, times_text,
+    CommonGain, Diagnosis, Finding, Gain, NotDetected, NotTestable, Proposal, Verdict, times_text,
 };
 use tactpad::lab::effect::Effect;
 
@@ -75,7 +75,11 @@ pub(super) fn proposed(next: &Proposal) -> Option<String> {
 
 fn verdict(diagnosis: &Diagnosis) -> String {
     let unnamed = percent(diagnosis.unnamed_share);
+    let has_gains = !diagnosis.not_testable.iter().any(|it| it.effect == Effect::ChannelGain);
     match diagnosis.verdict {
+        Verdict::NoDiscrepancy if !has_gains => {
+            "No discrepancy in what these rows can show, which is little: what could not be tested stands below.".into()
+        }
         Verdict::NoDiscrepancy => "No discrepancy: the model accounts for these rows.".into(),
         Verdict::Explained => "Explained: what the model gets wrong here is what is listed below.".into(),
         Verdict::PartlyExplained => format!(
@@ -190,7 +194,8 @@ fn untested(f: &mut fmt::Formatter<'_>, diagnosis: &Diagnosis) -> fmt::Result {
     for (index, column) in needs.iter().enumerate() {
         let effects = diagnosis.not_testable.iter().filter(|it| it.needs == *column);
         let effects: Vec<&str> = effects.map(|it| it.effect.name()).collect();
-        let text = format!("Not testable without {column} that varies: {}.", effects.join(", "));
+        let that_varies = if NotTestable::needs_column(column) { " that varies" } else { "" };
+        let text = format!("Not testable without {column}{that_varies}: {}.", effects.join(", "));
         writeln!(f, "{}{}", if index == 0 { "\n" } else { "" }, hanging("", &text))?;
     }
     Ok(())

@@ -41,6 +41,8 @@ pub(super) struct Circumstances {
     pub(super) has_time: bool,
     pub(super) has_temperature: bool,
     pub(super) has_series: bool,
+    /// Whether places or presses are repeated in both recordings. Else nobody knows what a sensor does by itself from one to the next.
+    pub(super) is_repeated: bool,
 }
 
 /// Everything that may have changed, as numbers.
@@ -66,6 +68,8 @@ pub(super) const EFFECTS: [Effect; 8] = [
     Effect::StageRotation,
     Effect::TimeLag,
 ];
+/// What is missing where nothing is repeated.
+const REPEATED: &str = "six places or presses in each recording";
 const AXES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
 
 impl Changes {
@@ -169,7 +173,7 @@ pub(super) fn hypotheses(
             ChangeKind::Lag,
         ));
     }
-    let all = all.into_iter().filter(|(effect, ..)| asks_for(*effect));
+    let all = all.into_iter().filter(|(effect, ..)| there.is_repeated && asks_for(*effect));
     all.map(|(effect, target, parameters, act)| {
         (
             Hypothesis {
@@ -187,6 +191,9 @@ pub(super) fn hypotheses(
 
 /// Hypotheses that cannot be tested, and the columns that are missing.
 pub(super) fn missing(columns: &Columns, there: Circumstances) -> Vec<NotTestable> {
+    if !there.is_repeated {
+        return EFFECTS.map(|effect| NotTestable { effect, needs: REPEATED }).to_vec();
+    }
     let has_place = AXES.iter().any(|name| columns.input(name).is_some());
     let turns = ["x_mm", "y_mm"].iter().all(|name| columns.input(name).is_some());
     [

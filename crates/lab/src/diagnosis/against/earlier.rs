@@ -21,8 +21,10 @@ const BEYOND: f64 = 0.1;
 /// Directions of the prediction's error at most; those that are left out have less than this part of the noise in any row.
 const ERRORS_MAX: usize = 160;
 const ERROR_MIN: f64 = 0.01;
-/// Least part of what all of a recording says of a change that a part of it says.
-const SEEN_MIN: f64 = 0.01;
+/// A channel goes with the labels whose gain is known better than to this.
+const GAIN_ERROR_MAX: f64 = 0.1;
+/// Fewer degrees of freedom than this say nothing of a deviation.
+const FREEDOM_MIN: f64 = 0.5;
 /// Static samples are enough from so many on.
 const STATIC_MIN: usize = 2 * ROWS_MIN;
 
@@ -50,6 +52,8 @@ pub(super) struct Channel {
     pub(super) drift: f64,
     /// By how much the gain differs from part to part.
     pub(super) gain: f64,
+    /// Standard deviation of its gain over the recording.
+    gain_error: f64,
     /// Residual of each row, and one over its variance; 0 where nothing is told.
     left: Vec<[f64; 2]>,
 }
@@ -92,6 +96,7 @@ impl EarlierRecording {
             channels[channel] = Some(Channel {
                 wander: between(own.iter().map(|part| part.zero)),
                 gain: between(own.iter().map(|part| part.gain)),
+                gain_error: own.iter().map(|part| part.gain[1].recip()).sum::<f64>().sqrt().recip(),
                 drift: if has_time { beyond_chance(fit.slope(0)) } else { 0.0 },
                 spread: regression.spread(&fit),
                 left: known.left(&fit),
@@ -162,9 +167,7 @@ impl EarlierRecording {
             }
         }
         let all = sums.iter().fold([0.0; 2], |all, it| [all[0] + it[0], all[1] + it[1]]);
-        // A part in which next to nothing of it can be seen says nothing.
-        let seen = sums.iter().filter(|it| it[1] > SEEN_MIN * all[1]);
-        let own = between(seen.map(|[product, square]| [product / square, 1.0 / square]));
+        let own = between(sums.iter().map(|[product, square]| [product / square, 1.0 / square]));
         let common = if all[1] > 0.0 { beyond_chance([all[0] / all[1], all[1].sqrt().recip()]) } else { 0.0 };
         libm::hypot(own, common)
     }
@@ -272,30 +275,48 @@ fn correlated(fit: &RegressionFit) -> f64 {
     (1.0 + fit.memory) / (1.0 - fit.memory)
 }
 
-/// The standard deviation of values beyond their variances. Few parts may be alike by chance: with B of them the sum of squares is
-/// over B − 3, as the mean of a scaled inverse χ² with B − 1 degrees of freedom has it.
+/// The standard deviation τ of values vᵢ beyond their variances σᵢ², by moments (DerSimonian and Laird, Controlled Clinical Trials 7 (1986)
+/// 177), each counting by what it tells, as large as few values leave it open:
+///
+/// ```text
+/// wᵢ = 1/σᵢ²,   W = Σ wᵢ,   v̄ = Σ wᵢ vᵢ/W
+/// τ² = (Σ wᵢ (vᵢ − v̄)² − (B − 1))/(W − Σ wᵢ²/W)
+/// ν = W²/Σ wᵢ² − 1,   times (t/z)² of ν degrees of freedom, at 95 %
+/// ```
 fn between(parts: impl Iterator<Item = [f64; 2]>) -> f64 {
-    let parts: Vec<[f64; 2]> = parts.filter(|part| part.iter().all(|it| it.is_finite())).collect();
-    if parts.len() <= 3 {
+    let parts = parts.map(|[value, variance]| [value, variance.recip()]);
+    let parts: Vec<[f64; 2]> =
+        parts.filter(|[value, weight]| value.is_finite() && weight.is_normal()).collect();
+    let whole: f64 = parts.iter().map(|[_, weight]| weight).sum();
+    let squared: f64 = parts.iter().map(|[_, weight]| weight * weight).sum();
+    let middle = parts.iter().map(|[value, weight]| weight * value).sum::<f64>() / whole;
+    let square: f64 = parts.iter().map(|[value, weight]| weight * (value - middle).powi(2)).sum();
+    if parts.len() < 2 {
         return 0.0;
     }
-    let middle = mean(parts.iter().map(|[value, _]| *value).collect::<Vec<_>>());
-    let squares: f64 = parts.iter().map(|[value, _]| (value - middle).powi(2)).sum();
-    let chance: f64 = parts.iter().map(|[_, variance]| variance).sum();
-    let freedom = parts.len() as f64;
-    ((squares - chance * (freedom - 1.0) / freedom) / (freedom - 3.0)).max(0.0).sqrt()
+    let beyond = (square - (parts.len() as f64 - 1.0)).max(0.0) / (whole - squared / whole);
+    beyond.sqrt() * widened(whole * whole / squared - 1.0)
 }
 
-/// Few parts tell little of what a channel does by itself: half of it is what all channels do, relative to their signals.
+/// The quantile of Student's t at 95 %, both ways, over the normal one. Source: D. L. Wallace, Ann. Math. Stat. 30 (1959) 1124; to 1 %
+/// from 4 degrees of freedom on, and never too small.
+fn widened(freedom: f64) -> f64 {
+    let normal = 1.96;
+    let freedom = freedom.max(FREEDOM_MIN);
+    let z: f64 = normal * (8.0 * freedom + 3.0) / (8.0 * freedom + 1.0);
+    (freedom * libm::expm1(z * z / freedom)).sqrt() / normal
+}
+
+/// Few parts tell little of what a channel does by itself: half of it is what all channels do, relative to their signals. One that hardly
+/// goes with the labels has no part in that.
 fn pool(channels: &mut [Option<Channel>], functions: &[Vec<f64>]) {
     let size = |it: &Channel| {
         let signals: Vec<f64> = functions.iter().map(|row| it.fit.signal(row)).collect();
         population_deviation(&signals).max(f64::MIN_POSITIVE.sqrt())
     };
     let sizes: Vec<f64> = channels.iter().flatten().map(size).collect();
-    let shares =
-        channels.iter().flatten().zip(&sizes).map(|(it, size)| [it.wander / size, it.drift / size, it.gain]);
-    let shares: Vec<[f64; 3]> = shares.collect();
+    let sure = channels.iter().flatten().zip(&sizes).filter(|(it, _)| it.gain_error < GAIN_ERROR_MAX);
+    let shares: Vec<[f64; 3]> = sure.map(|(it, size)| [it.wander / size, it.drift / size, it.gain]).collect();
     let pooled = [0, 1, 2].map(|at| rms(shares.iter().map(|it| it[at])));
     for (channel, size) in channels.iter_mut().flatten().zip(sizes) {
         let half = |own: f64, pooled: f64| rms([own, pooled]);

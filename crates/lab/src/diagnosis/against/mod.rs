@@ -133,7 +133,7 @@ fn told(
     gate: Gate,
 ) -> Result<Diagnosis, ComparisonError> {
     let all = &after.observations;
-    let there = circumstances(after, known);
+    let there = circumstances([before, after], known);
     let times_s = extent(all.samples.iter().filter_map(|sample| sample.t_s));
     let temp_c = mean(all.samples.iter().filter_map(|sample| sample.temp_c).collect::<Vec<_>>());
     let sizes = sizes(known, after);
@@ -162,7 +162,14 @@ fn told(
         Judgement { is_complete: false, validation: Validation::OnLockedRows },
     )
     .map_err(no_solution)?;
-    standing(&mut diagnosis, &search, &rows, &found);
+    if there.is_repeated {
+        standing(&mut diagnosis, &search, &rows, &found);
+    } else {
+        // No chance is known that a zero could be held against.
+        diagnosis.findings.clear();
+        diagnosis.unnamed_share = 0.0;
+        diagnosis.unnamed_by_channel.fill(0.0);
+    }
     let signals = &found.fit.linearised.readings;
     let expected: Vec<Option<[f64; 2]>> =
         signals.iter().enumerate().map(|(channel, signals)| known.noise(channel, signals)).collect();
@@ -215,7 +222,7 @@ pub(in crate::diagnosis) fn unplaced(diagnosis: &mut Diagnosis, columns: &Column
     }
 }
 
-fn circumstances(after: &Recording, known: &EarlierRecording) -> Circumstances {
+fn circumstances([before, after]: [&Recording; 2], known: &EarlierRecording) -> Circumstances {
     let samples = &after.observations.samples;
     let [first, last] = extent(samples.iter().filter_map(|sample| sample.t_s));
     let in_series = samples.iter().filter(|sample| sample.trial.is_some() && sample.t_s.is_some());
@@ -223,6 +230,7 @@ fn circumstances(after: &Recording, known: &EarlierRecording) -> Circumstances {
         has_time: last > first && samples.iter().all(|sample| sample.t_s.is_some()),
         has_temperature: known.has_temperature(),
         has_series: in_series.count() >= SERIES_MIN,
+        is_repeated: before.is_repeated && after.is_repeated,
     }
 }
 

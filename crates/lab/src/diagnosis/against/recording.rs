@@ -1,21 +1,24 @@
 //! A recording of any sensor as observations, and the labels that its channels are predicted by.
 
 use super::columns::{Columns, extent};
+use super::unfit::BLOCKS_MIN;
 use tactpad_core::tables::measured::sheet::Sheet;
 use tactpad_inference::observations::{Observations, Sample};
-use tactpad_numeric::statistics::median;
+use tactpad_numeric::statistics::{correlation, median};
 
 /// Places nearer to each other than this are one location.
 const LOCATION_MM: f64 = 0.25;
 /// A code for a missing weight: a negative one that recurs in this part of the rows, where no other is negative.
 const CODE_SHARE: f64 = 0.01;
-/// Rows without trial are one time series if they follow each other faster than this, and are so many.
-const SERIES_STEP_S: f64 = 0.5;
+/// Rows without trial are one time series if they are so many and follow each other faster than this, or each label's correlation with
+/// the one before is larger than this: a load that is driven, not contacts one by one.
 const SERIES_ROWS: usize = 50;
+const SERIES_STEP_S: f64 = 0.5;
+const DRIVEN: f64 = 0.98;
 /// A press begins above, and has ended below this part of the range of what varies most.
 const PRESSED: [f64; 2] = [0.4, 0.6];
-/// Fewest presses that are presses; a series without is cut into so many equal parts.
-const PRESSES_MIN: usize = 4;
+/// A long series of fewer presses is cut into so many equal parts, which are no presses.
+const PRESSES_MIN: usize = BLOCKS_MIN;
 const PARTS: usize = 8;
 /// A label goes nowhere whose range is less than this part of the earlier one, and a channel as far as before whose range is more.
 const NARROW: f64 = 0.05;
@@ -38,6 +41,8 @@ pub(in crate::diagnosis) struct Recording {
     pub(in crate::diagnosis) blocks: Vec<usize>,
     /// How many rows had no label.
     pub(in crate::diagnosis) unlabelled: usize,
+    /// Whether it has enough places or presses to tell what a sensor does by itself from one to the next.
+    pub(in crate::diagnosis) is_repeated: bool,
 }
 
 impl Recording {
@@ -47,7 +52,7 @@ impl Recording {
         let rows: Vec<usize> = (0..sheet.rows()).filter(is_written).collect();
         let of = |name: &str| columns.numbers(sheet, name);
         let finite = |name: &str, row: usize| of(name).map(|all| all[row]).filter(|it| it.is_finite());
-        let trials = trials(sheet, columns);
+        let trials = trials(sheet, columns, &labels);
         let sessions = numbered(columns.texts(sheet, "session").unwrap_or_default());
         let inputs: Vec<Vec<f64>> =
             rows.iter().map(|row| labels.iter().map(|label| label[*row]).collect()).collect();
@@ -80,8 +85,11 @@ impl Recording {
             unlabelled: sheet.rows() - rows.len(),
             table_rows: rows,
             blocks: Vec::new(),
+            is_repeated: false,
         };
-        recording.blocks = recording.clusters(columns);
+        let draws;
+        (recording.blocks, draws) = recording.clusters(columns);
+        recording.is_repeated = draws >= BLOCKS_MIN;
         recording
     }
 
@@ -95,6 +103,7 @@ impl Recording {
             table_rows: rows.iter().map(|row| self.table_rows[*row]).collect(),
             blocks: rows.iter().map(|row| self.blocks[*row]).collect(),
             unlabelled: self.unlabelled,
+            is_repeated: self.is_repeated,
         }
     }
 
@@ -148,11 +157,12 @@ impl Recording {
         narrow.first().copied().filter(|_| is_complete && 2 * far > self.observations.readings.len())
     }
 
-    /// Rows that share their errors: those of one location and session, or of one press of a series.
-    fn clusters(&self, columns: &Columns) -> Vec<usize> {
+    /// Rows that share their errors: those of one location and session, or of one press of a series, or of a part of one without presses;
+    /// and how many there are, such a series counted once.
+    fn clusters(&self, columns: &Columns) -> (Vec<usize>, usize) {
         let places: Vec<usize> = ["x_mm", "y_mm"].iter().filter_map(|name| columns.input(name)).collect();
         let steps = |mm: f64| libm::round(mm / LOCATION_MM) as i64;
-        let presses = self.presses();
+        let (presses, cut) = self.presses();
         let key = |(row, sample): (usize, &Sample)| match presses[row] {
             Some((trial, press)) => (0, [trial as i64, press as i64]),
             None if places.is_empty() => (1, [row as i64, 0]),
@@ -165,19 +175,21 @@ impl Recording {
         let mut sorted = keys.clone();
         sorted.sort_unstable();
         sorted.dedup();
-        keys.iter().map(|key| sorted.partition_point(|it| it < key)).collect()
+        let clusters = keys.iter().map(|key| sorted.partition_point(|it| it < key)).collect();
+        (clusters, sorted.len() - cut * (PARTS - 1))
     }
 
-    /// For each row of a series, its trial and its press there.
-    fn presses(&self) -> Vec<Option<(usize, usize)>> {
+    /// For each row of a series, its trial and its press there; and how many series are cut into parts for want of presses.
+    fn presses(&self) -> (Vec<Option<(usize, usize)>>, usize) {
         let samples = &self.observations.samples;
-        let mut presses = vec![None; samples.len()];
+        let (mut presses, mut cut) = (vec![None; samples.len()], 0);
         let mut begin = 0;
         while begin < samples.len() {
             let trial = samples[begin].trial;
             let length = samples[begin..].iter().take_while(|sample| sample.trial == trial).count();
             if let Some(trial) = trial {
-                let pressed = pressed(&self.inputs[begin..begin + length]);
+                let (pressed, is_cut) = pressed(&self.inputs[begin..begin + length]);
+                cut += usize::from(is_cut);
                 presses
                     .iter_mut()
                     .skip(begin)
@@ -186,12 +198,12 @@ impl Recording {
             }
             begin += length;
         }
-        presses
+        (presses, cut)
     }
 }
 
-/// The number of its press for each row of a series: another begins where what varies most has come back.
-fn pressed(rows: &[Vec<f64>]) -> Vec<usize> {
+/// The number of its press for each row of a series: another begins where what varies most has come back. Or that of its part, and true.
+fn pressed(rows: &[Vec<f64>]) -> (Vec<usize>, bool) {
     let inputs = rows.first().map_or(0, Vec::len);
     // How often it goes through the middle of its range tells which label is pressed by.
     let runs = |at: usize| {
@@ -212,9 +224,9 @@ fn pressed(rows: &[Vec<f64>]) -> Vec<usize> {
     let all = (0..inputs).map(runs);
     let most = all.max_by_key(|runs| runs.last().copied().unwrap_or(0)).unwrap_or_default();
     if most.last().is_some_and(|last| *last >= PRESSES_MIN) || rows.len() < SERIES_ROWS * PARTS {
-        return most;
+        return (most, false);
     }
-    (0..rows.len()).map(|row| row * PARTS / rows.len()).collect()
+    ((0..rows.len()).map(|row| row * PARTS / rows.len()).collect(), true)
 }
 
 /// A label's numbers, without codes for missing ones.
@@ -230,14 +242,21 @@ fn label(sheet: &Sheet, name: &str) -> Vec<f64> {
     numbers
 }
 
-/// For each row its time series. Rows without trials are one if they follow each other fast enough.
-fn trials(sheet: &Sheet, columns: &Columns) -> Vec<Option<usize>> {
+/// For each row its time series. Rows without trials are one if they follow each other fast enough, or their labels go on.
+fn trials(sheet: &Sheet, columns: &Columns, labels: &[Vec<f64>]) -> Vec<Option<usize>> {
     if let Some(texts) = columns.texts(sheet, "trial") {
         return numbered(texts);
     }
     let t_s = columns.numbers(sheet, "t_s").unwrap_or_default();
     let step = median(t_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| step.is_finite()));
-    let is_series = t_s.len() >= SERIES_ROWS && step.is_some_and(|step| step > 0.0 && step < SERIES_STEP_S);
+    let goes_on = |label: &Vec<f64>| {
+        let pairs = label.iter().zip(label.iter().skip(1));
+        let (one, next): (Vec<f64>, Vec<f64>) =
+            pairs.filter(|(one, next)| one.is_finite() && next.is_finite()).unzip();
+        correlation(&one, &next) > DRIVEN
+    };
+    let is_series = t_s.len() >= SERIES_ROWS
+        && step.is_some_and(|step| step > 0.0 && (step < SERIES_STEP_S || labels.iter().all(goes_on)));
     vec![is_series.then_some(0); sheet.rows()]
 }
 

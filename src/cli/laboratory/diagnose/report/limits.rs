@@ -4,7 +4,7 @@ use super::super::numbers::{decimals, parts, rounded, with_unit};
 use super::drawing::escaped;
 use super::subject::Subject;
 use super::words::{capital, cause};
-use tactpad::lab::diagnosis::report::NotDetected;
+use tactpad::lab::diagnosis::report::{NotDetected, NotTestable};
 use tactpad::lab::effect::Effect;
 
 /// A cause that another one reproduces to this part would hardly have been named alone.
@@ -133,11 +133,12 @@ pub(super) fn untested(subject: &Subject<'_>) -> String {
     let row = |column: &&str| {
         let effects = all.iter().filter(|it| it.needs == *column).map(|it| it.effect.title());
         let effects: Vec<&str> = effects.collect();
-        format!(
-            "<li>Without <code>{}</code> that varies: {}.</li>",
-            escaped(column),
-            escaped(&effects.join(", "))
-        )
+        let effects = escaped(&effects.join(", "));
+        if NotTestable::needs_column(column) {
+            format!("<li>Without <code>{}</code> that varies: {effects}.</li>", escaped(column))
+        } else {
+            format!("<li>Without {}: {effects}.</li>", escaped(column))
+        }
     };
     format!("{head}<ul>{}</ul></section>", needs.iter().map(row).collect::<String>())
 }

@@ -4,6 +4,8 @@
 use std::fs;
 use std::path::Path;
 
+use tactpad::numeric::random::SplitMix64;
+
 use crate::ran::{json, refused, tactpad};
 
 /// Writes a table of the twin again with other labels, and with other channels.
@@ -86,4 +88,91 @@ fn arguments_that_say_nothing_are_refused_with_what_to_write() {
         let why = refused(folder.path(), &format!("evaluate --measured m.csv {argument}"));
         assert!(why.contains(way_out), "{why}");
     }
+}
+
+/// A measured table of the nominal pad with 4 µV of noise, whose labels are written as `written` makes them of the row and of all true ones.
+fn measured(folder: &Path, name: &str, written: impl Fn(usize, &[[f64; 5]]) -> [f64; 5]) {
+    let mut random = SplitMix64::new(7);
+    let mut within = |low: f64, high: f64| low + (high - low) * f64::from(random.fraction());
+    let contact = |_| {
+        let (radius_mm, angle) = (20.0 * within(0.0, 1.0).sqrt(), within(0.0, std::f64::consts::TAU));
+        let fz_n = within(1.5, 5.0);
+        let shear = |of: f64| 0.2 * fz_n * of;
+        [
+            radius_mm * angle.cos(),
+            radius_mm * angle.sin(),
+            shear(within(-1.0, 1.0)),
+            shear(within(-1.0, 1.0)),
+            fz_n,
+        ]
+    };
+    let contacts: Vec<[f64; 5]> = (0..400).map(contact).collect();
+    let text = |labels: &[f64; 5]| labels.map(|number| number.to_string()).join(",");
+    let header = "x_mm,y_mm,fx_n,fy_n,fz_n";
+    let lines: Vec<String> = contacts.iter().map(text).collect();
+    fs::write(folder.join("contacts.csv"), format!("{header}\n{}\n", lines.join("\n"))).unwrap();
+    assert!(tactpad(folder, "simulate --contacts contacts.csv --out read.csv").status.success());
+    let read = fs::read_to_string(folder.join("read.csv")).unwrap();
+    let (names, rows) = read.split_once('\n').unwrap();
+    let is_channel: Vec<bool> = names.split(',').map(|name| name.ends_with("_uv")).collect();
+    let channels = |line: &str| -> Vec<String> {
+        line.split(',')
+            .map(str::to_owned)
+            .zip(&is_channel)
+            .filter(|(_, it)| **it)
+            .map(|(cell, _)| cell)
+            .collect()
+    };
+    let mut table = format!("{header},{}\n", channels(names).join(","));
+    for (at, line) in rows.lines().enumerate() {
+        let noisy = channels(line).into_iter().map(|cell| {
+            let uv: f64 = cell.parse().unwrap();
+            format!("{:.3}", uv + 4.0 * f64::from(random.normal()))
+        });
+        table += &format!("{},{}\n", text(&written(at, &contacts)), noisy.collect::<Vec<_>>().join(","));
+    }
+    fs::write(folder.join(name), table).unwrap();
+}
+
+#[test]
+fn labels_that_stand_still_or_are_rounded_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let found = |name: &str| -> Vec<(String, String)> {
+        let found = json(folder, &format!("diagnose --measured {name} --json"));
+        let texts =
+            |it: &serde_json::Value| ["effect", "target"].map(|key| it[key].as_str().unwrap().to_owned());
+        found["findings"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(texts)
+            .map(|[effect, target]| (effect, target))
+            .collect()
+    };
+    let is = |effect: &str, targets: &[&str]| -> Vec<(String, String)> {
+        targets.iter().map(|target| (effect.to_owned(), (*target).to_owned())).collect()
+    };
+    measured(folder, "sound.csv", |at, all| all[at]);
+    assert_eq!(found("sound.csv"), []);
+    measured(folder, "rounded.csv", |at, all| {
+        let [x_mm, y_mm, fx_n, fy_n, fz_n] = all[at];
+        [x_mm.round(), y_mm.round(), fx_n, fy_n, fz_n]
+    });
+    assert_eq!(found("rounded.csv"), is("label_rounded", &["x_mm", "y_mm"]));
+    measured(folder, "stuck.csv", |at, all| {
+        let mut label = all[at];
+        label[4] = all[if (100..150).contains(&at) { 100 } else { at }][4];
+        label
+    });
+    assert_eq!(found("stuck.csv"), is("label_stuck", &["fz_n"]));
+    let why = refused(folder, "adapt --method inverse --measured stuck.csv --out none.decoder");
+    assert!(why.contains("fz_n stands still in 50 of 400 contacts, lines 102 to 151"), "{why}");
+    measured(folder, "never.csv", |at, all| {
+        let mut label = all[at];
+        label[4] = 2.0;
+        label
+    });
+    let why = refused(folder, "diagnose --measured never.csv");
+    assert!(why.contains("fz_n is the same in all rows") && why.lines().count() == 1, "{why}");
 }

@@ -122,6 +122,8 @@ effects! {
     LabelFrame: "label_frame", "another frame", "{target} stand in another frame than the pad's: {map}";
     LabelSign: "label_sign", "other signs", "the signs of {with} are not those of a finger on the plate: {map}";
     LabelUnit: "label_unit", "another unit", "the unit of {with} is another: {factor} of the one that is expected";
+    LabelStuck: "label_stuck", "stuck label", "{target} stands still in {rows}, while the contacts go on";
+    LabelRounded: "label_rounded", "rounded label", "{target} is rounded to {step}";
     RowShift: "row_shift", "rows out of step", "{target} are {rows|late|early}";
     ChannelDead: "channel_dead", "dead channel", "{target} is dead";
     ChannelPolarity: "channel_polarity", "reversed channel", "{target} has the wrong sign";
@@ -232,7 +234,12 @@ impl Effect {
             | Self::ContactHeight
             | Self::ContactSize
             | Self::TimeLag => Rig,
-            Self::LabelFrame | Self::LabelSign | Self::LabelUnit | Self::RowShift => Labels,
+            Self::LabelFrame
+            | Self::LabelSign
+            | Self::LabelUnit
+            | Self::LabelStuck
+            | Self::LabelRounded
+            | Self::RowShift => Labels,
             Self::Own(own) => own.family,
             Self::Unlisted => return None,
         })

@@ -53,6 +53,7 @@ use self::simulation::atlas::{Atlas, attributed};
 use self::simulation::simulated::Simulated;
 use self::validation::ceiling::{ceiling_share, is_all_removed};
 use self::validation::gain::{Rows, gain, rmse};
+use self::validation::rounded::rounded;
 use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
 use tactpad_core::quantity::CHANNEL_NAMES;
@@ -80,6 +81,8 @@ pub enum DiagnosisError {
     Locations(usize),
     /// No forces.
     Unloaded,
+    /// A label never changes while the contacts do.
+    Stuck(&'static str),
     /// No channel goes with the contacts.
     Silent,
     /// The inference has no answer.
@@ -98,6 +101,11 @@ impl fmt::Display for DiagnosisError {
                 "contacts at {locations} places: to tell causes apart it takes {LOCATIONS_MIN} at least, spread over the plate"
             ),
             Self::Unloaded => f.write_str("all forces are zero: without written loads the channels cannot be held against the pad"),
+            Self::Stuck(name) => write!(
+                f,
+                "{name} is the same in all rows, while the contacts that the channels tell are not: see why it was not written, and measure \
+                 again; or say with --without label_stuck that it is so"
+            ),
             Self::Silent => f.write_str(
                 "no channel follows the contacts; measure again, and see that each row has the channels of its own contact",
             ),
@@ -148,6 +156,9 @@ fn diagnosed(
         check_meant(table)?;
         checked(&observed(table), pad, without)?
     } else {
+        if let Some(stuck) = conventions.stuck.iter().find(|it| it.rows.len() == conventions.contacts()) {
+            return Err(DiagnosisError::Stuck(stuck.name()));
+        }
         let meant = conventions.applied(table);
         check_meant(&meant)?;
         let [written, meant] = [observed(table), observed(&meant)];
@@ -222,6 +233,12 @@ fn concluded(
     let diagnosis = summary(&search, found, &rows, &missing, Judgement { is_complete, validation })?;
     let excess = (!without.contains(&Effect::NoiseExcess))
         .then(|| excess(open, &found.fit.systems.noise, &found.fit.linearised.readings));
+    let asks_for_steps = validation == Validation::OnLockedRows && !without.contains(&Effect::LabelRounded);
+    let rounded = if asks_for_steps { rounded(&rows[0], &found.fit) } else { Vec::new() };
+    for (finding, notice) in rounded {
+        gate.findings.push(finding);
+        gate.notices.push(notice);
+    }
     let mut individual = individual.to_vec();
     if has_own_gains(&diagnosis.findings, open) {
         let effect = |at: &usize| model.hypotheses()[*at].label.0;
@@ -288,7 +305,7 @@ fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Dia
 /// The names of all effects that can be found.
 pub fn effects() -> impl Iterator<Item = Effect> {
     let of_recording = conventions::EFFECTS.into_iter().chain(gatekeepers::EFFECTS);
-    CATALOGUE.iter().map(|cause| cause.effect).chain(of_recording)
+    CATALOGUE.iter().map(|cause| cause.effect).chain(of_recording).chain([Effect::LabelRounded])
 }
 
 /// Whether there is enough in a table; quick, where [`diagnose`] takes seconds.

@@ -39,6 +39,20 @@ pub(crate) struct DecodedContact {
     pub(crate) missed: f64,
 }
 
+impl DecodedContact {
+    /// x, y, Fx, Fy, Fz.
+    pub(crate) const fn numbers(&self) -> [f64; 5] {
+        let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) = (self.place_mm, self.force_n);
+        [x_mm, y_mm, fx_n, fy_n, fz_n]
+    }
+
+    /// The magnitude of the force.
+    pub(crate) fn resultant_n(&self) -> f64 {
+        let [fx_n, fy_n, fz_n] = self.force_n;
+        libm::hypot(libm::hypot(fx_n, fy_n), fz_n)
+    }
+}
+
 /// Decodes readings by the nominal field.
 pub(crate) struct Decoding {
     inverse: Inverse,

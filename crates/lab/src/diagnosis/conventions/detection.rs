@@ -2,6 +2,7 @@
 
 use super::decoding::Decoding;
 use super::mapping::{Mapping, WrittenContact};
+use super::stuck::StuckLabel;
 use super::symmetry::Readings;
 use super::wiring::SignedPermutation;
 use crate::tangent::SimulatedPad;
@@ -60,6 +61,8 @@ pub struct Conventions {
     pub rows_late: isize,
     /// Rows whose readings are of one finger, but of another contact than any label of the table's kind says.
     pub strangers: Vec<usize>,
+    /// Labels that stand still while the contacts go on.
+    pub stuck: Vec<StuckLabel>,
     /// Contacts that tell something.
     pub(super) contacts: usize,
 }
@@ -67,12 +70,17 @@ pub struct Conventions {
 impl Conventions {
     /// Labels as the pad's frame, mm and N.
     const fn none() -> Self {
-        Self { parts: Vec::new(), rows_late: 0, strangers: Vec::new(), contacts: 0 }
+        Self { parts: Vec::new(), rows_late: 0, strangers: Vec::new(), stuck: Vec::new(), contacts: 0 }
+    }
+
+    /// How many contacts tell something.
+    pub(crate) const fn contacts(&self) -> usize {
+        self.contacts
     }
 
     /// Whether all labels are as they should be, and of their rows.
     pub fn are_default(&self) -> bool {
-        self.strangers.is_empty() && self.are_meant_so()
+        self.strangers.is_empty() && self.stuck.is_empty() && self.are_meant_so()
     }
 
     /// Whether they are in the pad's frame, mm and N.
@@ -83,13 +91,17 @@ impl Conventions {
     /// By the table's readings.
     pub fn of(table: &Table, pad: &SimulatedPad<'_>) -> Self {
         let agreement = |rows_late| Agreement::of(table, pad, rows_late);
-        let as_written = agreement(0);
-        if let Some(found) = as_written.filter(Agreement::holds) {
-            return found.conventions(pad);
+        let Some(as_written) = agreement(0) else { return Self::none() };
+        let stuck = |do_agree| StuckLabel::of(&as_written.all, do_agree);
+        if as_written.holds() {
+            let found = as_written.conventions(pad);
+            let stuck = if found.are_meant_so() { stuck(true) } else { Vec::new() };
+            return Self { stuck, ..found };
         }
         let shifts = (1..=SHIFT_MAX).flat_map(|rows| [rows, -rows]);
         let found = shifts.filter_map(agreement).find(Agreement::holds);
-        found.map_or_else(Self::none, |found| found.conventions(pad))
+        let none = || Self { stuck: stuck(false), ..Self::none() };
+        found.map_or_else(none, |found| found.conventions(pad))
     }
 
     /// The table in the pad's frame, mm, N and µV.
@@ -108,7 +120,8 @@ impl Conventions {
             row.label = part.convention.meant_of(row);
             row.uv = row.uv.map(|uv| uv.map(|value| part.convention.units.uv * value));
         }
-        self.strangers.iter().for_each(|row| table.rows[*row].uv = None);
+        let left_out = self.stuck.iter().flat_map(|it| &it.rows).chain(&self.strangers);
+        left_out.for_each(|row| table.rows[*row].uv = None);
         table
     }
 }
@@ -135,7 +148,7 @@ fn shifted(table: &Table, rows_late: isize) -> Table {
 /// How the labels agree with the readings, for one order of rows.
 struct Agreement {
     rows_late: isize,
-    contacts: usize,
+    all: Vec<WrittenContact>,
     wiring: SignedPermutation,
     /// Mappings, each with the rows that agree.
     mappings: Vec<(Mapping, Vec<usize>)>,
@@ -158,8 +171,7 @@ impl Agreement {
             Some(WrittenContact { row, decoded: decoding.contact(&wiring.of(&uv))?, label })
         };
         let all_contacts: Vec<WrittenContact> = rows.into_iter().filter_map(contact).collect();
-        let contacts = all_contacts.len();
-        let least = (PART_MIN * contacts as f64).max(CONTACTS_MIN as f64);
+        let least = (PART_MIN * all_contacts.len() as f64).max(CONTACTS_MIN as f64);
         let mut mappings: Vec<Mapping> = Vec::new();
         let mut left = all_contacts.clone();
         while mappings.len() < PARTS_MAX && left.len() as f64 >= least {
@@ -191,16 +203,16 @@ impl Agreement {
             it.decoded.missed <= sound && mappings.iter().all(|(mapping, _)| mapping.contradicts(it))
         };
         let strangers = left.iter().filter(is_stranger).map(|it| it.row).collect();
-        Some(Self { rows_late, contacts, wiring, mappings, strangers })
+        Some(Self { rows_late, all: all_contacts, wiring, mappings, strangers })
     }
 
     /// Whether most contacts agree with something.
     fn holds(&self) -> bool {
         let agreeing: usize = self.mappings.iter().map(|(_, rows)| rows.len()).sum();
-        agreeing as f64 >= AGREEING * self.contacts as f64
+        agreeing as f64 >= AGREEING * self.all.len() as f64
     }
 
-    fn conventions(self, pad: &SimulatedPad<'_>) -> Conventions {
+    fn conventions(&self, pad: &SimulatedPad<'_>) -> Conventions {
         let readings = Readings::new(pad.device, pad.field);
         let symmetries = readings.symmetries(pad.device);
         let least = |mapping: &Mapping| {
@@ -216,11 +228,12 @@ impl Agreement {
         let mut conventions = Conventions {
             parts: Vec::new(),
             rows_late: self.rows_late,
-            strangers: self.strangers,
-            contacts: self.contacts,
+            strangers: self.strangers.clone(),
+            stuck: Vec::new(),
+            contacts: self.all.len(),
         };
-        for (mapping, rows) in self.mappings {
-            conventions.add(rows, before(&convention(&mapping), &symmetry));
+        for (mapping, rows) in &self.mappings {
+            conventions.add(rows.clone(), before(&convention(mapping), &symmetry));
         }
         conventions
     }

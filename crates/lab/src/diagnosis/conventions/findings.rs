@@ -1,6 +1,7 @@
 //! What is said of the labels: findings, what tells them from faults of the wiring, and the arguments that mend them.
 
 use super::detection::{Conventions, LabelPart};
+use super::stuck::StuckLabel;
 use super::symmetry::Readings;
 use super::wiring::SignedPermutation;
 use crate::diagnosis::data::target::{LabelColumns, Target};
@@ -25,6 +26,7 @@ impl Conventions {
     pub(crate) fn findings(&self, table: &Table, pad: &SimulatedPad<'_>, share: f64) -> Vec<Finding> {
         let readings = Readings::new(pad.device, pad.field);
         let mut found: Vec<Finding> = self.row_shift().into_iter().collect();
+        found.extend(self.stuck.iter().map(|stuck| self.stuck_label(stuck, table)));
         for part in &self.parts {
             let of_part = self.part_text(part, table);
             let part = PartFindings { part, text: of_part.as_ref(), readings: &readings };
@@ -46,6 +48,15 @@ impl Conventions {
         Some(Notice { check: "labels", channel: None, detail })
     }
 
+    fn stuck_label(&self, stuck: &StuckLabel, table: &Table) -> Finding {
+        let rows = stuck.rows.len() as f64;
+        let part = self.rows_text(&stuck.rows, table);
+        let note = LabelNote { map: None, part, argument: None };
+        let parameters = vec![Estimate { name: "rows", value: rows, interval95: [rows; 2] }];
+        finding(Effect::LabelStuck, LabelColumns::One(stuck.column), stuck.rows.len(), note)
+            .with_parameters(parameters)
+    }
+
     fn row_shift(&self) -> Option<Finding> {
         let rows = self.rows_late as f64;
         let parameters = vec![Estimate { name: "rows", value: rows, interval95: [rows; 2] }];
@@ -57,10 +68,13 @@ impl Conventions {
 
     /// The part's rows, where they are not all.
     fn part_text(&self, part: &LabelPart, table: &Table) -> Option<String> {
+        self.rows_text(&part.rows, table).filter(|_| self.parts.len() > 1)
+    }
+
+    fn rows_text(&self, rows: &[usize], table: &Table) -> Option<String> {
         let line = |row: &usize| table.rows[*row].line;
-        let [first, last] = [part.rows.iter().map(line).min()?, part.rows.iter().map(line).max()?];
-        (self.parts.len() > 1)
-            .then(|| format!("{} of {} contacts, lines {first} to {last}", part.rows.len(), self.contacts))
+        let [first, last] = [rows.iter().map(line).min()?, rows.iter().map(line).max()?];
+        Some(format!("{} of {} contacts, lines {first} to {last}", rows.len(), self.contacts))
     }
 }
 
@@ -213,17 +227,18 @@ fn strongest_module(readings: &[f64; CHANNELS]) -> usize {
 pub fn refusal(table: &Table, pad: &SimulatedPad<'_>) -> Option<String> {
     let conventions = Conventions::of(table, pad);
     let findings = conventions.findings(table, pad, 0.0);
-    if conventions.are_meant_so() {
+    if conventions.are_meant_so() && conventions.stuck.is_empty() {
         return None;
     }
     let said: Vec<String> = findings.iter().map(sentence).collect();
     let arguments: Vec<String> =
         conventions.parts.first().map(|part| part.convention.to_string()).into_iter().collect();
-    let way_out = if conventions.parts.len() > 1 || conventions.rows_late != 0 {
-        "mend these columns, and give the table again".to_owned()
-    } else {
-        format!("say so with {}, or mend the table", arguments.concat())
-    };
+    let way_out =
+        if !conventions.stuck.is_empty() || conventions.parts.len() > 1 || conventions.rows_late != 0 {
+            "mend these columns, and give the table again".to_owned()
+        } else {
+            format!("say so with {}, or mend the table", arguments.concat())
+        };
     let otherwise = findings.iter().find_map(|it| it.separate_by.as_ref());
     let otherwise = otherwise.map(|press| format!("; to be sure {press}")).unwrap_or_default();
     Some(format!(
@@ -244,6 +259,9 @@ fn sentence(finding: &Finding) -> String {
     match finding.effect {
         Effect::LabelFrame => format!("the labels stand in another frame than the pad's, \"{map}\"{part}"),
         Effect::LabelSign => format!("the forces' signs are not the finger's, \"{map}\"{part}"),
+        Effect::LabelStuck => {
+            format!("{columns} stands still{part}, while the contacts that the channels tell go on")
+        }
         Effect::RowShift if value > 0.0 => format!("the labels are {value} rows late"),
         Effect::RowShift => format!("the labels are {} rows early", -value),
         _ => format!("the unit of {columns} is another, {value} of the one that is expected{part}"),

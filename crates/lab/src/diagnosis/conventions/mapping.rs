@@ -66,13 +66,13 @@ impl WrittenContact {
 
     /// Newtons in a unit of the written force, by this contact.
     fn unit_n(&self) -> f64 {
-        length3(&self.decoded.force_n) / self.label.resultant_n()
+        self.decoded.resultant_n() / self.label.resultant_n()
     }
 
     /// Whether both forces have a part in the plane.
     fn is_sheared(&self) -> bool {
         length(self.shear()) > SHEAR_SHARE * self.label.resultant_n()
-            && length(self.decoded_shear()) > SHEAR_SHARE * length3(&self.decoded.force_n)
+            && length(self.decoded_shear()) > SHEAR_SHARE * self.decoded.resultant_n()
     }
 
     /// Whether both forces have a part out of the plane.
@@ -83,10 +83,6 @@ impl WrittenContact {
 
 fn length([x, y]: [f64; 2]) -> f64 {
     libm::hypot(x, y)
-}
-
-fn length3([x, y, z]: &[f64; 3]) -> f64 {
-    libm::hypot(libm::hypot(*x, *y), *z)
 }
 
 fn angle_deg([x, y]: [f64; 2]) -> f64 {

@@ -15,7 +15,12 @@ pub enum LabelColumns {
     Forces,
     /// The channels.
     Channels,
+    /// One of x, y, Fx, Fy, Fz.
+    One(usize),
 }
+
+/// The columns of the labels, in their order.
+pub(crate) const LABELS: [&str; 5] = ["x_mm", "y_mm", "fx_n", "fy_n", "fz_n"];
 
 impl LabelColumns {
     /// Its name in reports.
@@ -25,6 +30,7 @@ impl LabelColumns {
             Self::Places => "places",
             Self::Forces => "forces",
             Self::Channels => "channels",
+            Self::One(column) => LABELS[column],
         }
     }
 }
@@ -80,6 +86,7 @@ impl Target {
             Self::Pad => "pad".to_owned(),
             Self::Rig => "rig".to_owned(),
             Self::All => "all".to_owned(),
+            Self::Labels(columns @ LabelColumns::One(_)) => columns.name().to_owned(),
             Self::Labels(_) => "labels".to_owned(),
             Self::Channel(channel) | Self::Channels { into: channel, .. } => channel_name(channels, channel),
             Self::Module(module) | Self::Modules { into: module, .. } | Self::ModuleSide(module, _) => {
@@ -93,7 +100,9 @@ impl Target {
         match *self {
             Self::Channels { from, .. } => Some(channel_name(channels, from)),
             Self::Modules { from, .. } => Some(format!("module{from}")),
-            Self::Labels(columns) if columns != LabelColumns::All => Some(columns.name().to_owned()),
+            Self::Labels(columns) if !matches!(columns, LabelColumns::All | LabelColumns::One(_)) => {
+                Some(columns.name().to_owned())
+            }
             _ => None,
         }
     }

@@ -129,7 +129,7 @@ impl Rows<'_> {
 }
 
 /// Whether something presses: without that there is no place to decode.
-fn is_loaded(sample: &Sample) -> bool {
+pub(super) fn is_loaded(sample: &Sample) -> bool {
     sample.load.iter().map(|n| n * n).sum::<f64>() > UNLOADED_N * UNLOADED_N
 }
 

@@ -3,3 +3,4 @@
 pub(crate) mod ceiling;
 pub(crate) mod gain;
 pub(crate) mod mean_square;
+pub(crate) mod rounded;

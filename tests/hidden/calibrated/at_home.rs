@@ -2,7 +2,7 @@
 //! 200 g on five marks.
 //!
 //! Goals, on unseen contacts of twenty pads: medians of 0.21 mm and 0.025 N, no pad beyond 0.35 mm, 90 to 98 % in the regions and no pad
-//! below 80 %.
+//! below 80 %. What such presses tell at best stands beside them ([`Information`]): of a pad whose moduli are not known, less than that of forces.
 
 use std::ops::RangeInclusive;
 
@@ -16,11 +16,13 @@ use tactpad::pad::field::PadField;
 use tactpad::quantity;
 
 use super::UNSEEN;
-use super::bound::Background;
+use super::bound::{Background, Hidden};
 use super::cases::{CASES, FIELDS};
 use super::judged::{Summary, decoded_by};
 use super::memory::Memory;
 use super::pad::{Changes, Recorded, Wiring, full_scale, plan, recorded, weighed};
+use super::unlabelled::{Information, Labelled, Unknown};
+use crate::fields::Table;
 use crate::plan::Contact;
 
 const PRESSES: usize = 1000;
@@ -29,6 +31,8 @@ const WEIGHT_N: f64 = 9.806_65e-3 * WEIGHT_G;
 const MARKS_MM: [[f64; 2]; 5] = [[0.0, 0.0], [15.0, 0.0], [-15.0, 0.0], [0.0, 15.0], [0.0, -15.0]];
 /// Placed within 0.7 mm, as nineteen of twenty.
 const OFF_MM: f64 = 0.35;
+/// How well its force is known, for the bound.
+const WEIGHT_OFF_N: f64 = 1e-3;
 /// A press lasts one window, a weight three seconds.
 const SAMPLE_S: f64 = 0.01;
 const PRESS_S: f64 = 0.1;
@@ -69,18 +73,58 @@ fn said(contact: &Contact) -> quantity::Contact {
 const BACKGROUND: f64 = 0.015;
 const BACKGROUND_MM: f64 = 14.0;
 
-fn played(changes: &Changes<'_>, wiring: &Wiring, seed: u64) -> (Vec<Window>, Vec<Placement>) {
-    let presses = apart(plan(PRESSES, seed, "calibrated at home"));
-    let full_scale = full_scale(&presses);
-    let weights = weighed(WEIGHT_N, &MARKS_MM, OFF_MM, seed);
-    let [presses, weights] = [(presses, 2 * seed), (weights, 2 * seed + 1)]
-        .map(|(rows, seed)| recorded(rows, changes, wiring, &full_scale, seed));
-    let (mut gatherer, mut at_s) = (WindowCollector::default(), 0.0);
-    windows(&presses, PRESS_S, &mut gatherer, &mut at_s);
-    let moments = windows(&weights, WEIGHT_S, &mut gatherer, &mut at_s);
-    let placement =
-        |(at_s, place_mm): (f64, [f64; 2])| Placement { line: 0, at_s, place_mm, weight_g: WEIGHT_G };
-    (gatherer.finish(), moments.into_iter().zip(MARKS_MM).map(placement).collect())
+/// A pad of a seed, as it is played on and as it is tried.
+struct Pad {
+    name: &'static str,
+    table: &'static Table,
+    wiring: Wiring,
+    background: Background,
+    presses: Recorded,
+    weights: Recorded,
+    unseen: Recorded,
+}
+
+impl Pad {
+    fn drawn(seed: u64) -> Self {
+        let case = &CASES[..FIELDS][seed as usize % FIELDS];
+        let table: &Table = case.table;
+        let wiring = Wiring::drawn_wide(seed);
+        let background = Background::drawn(table, BACKGROUND, BACKGROUND_MM, seed);
+        let changes = Changes { table, memory: Memory::Nothing, rig: &[], background: Some(&background) };
+        let presses = apart(plan(PRESSES, seed, "calibrated at home"));
+        let weights = weighed(WEIGHT_N, &MARKS_MM, OFF_MM, seed);
+        let unseen = plan(UNSEEN, seed, "calibrated unseen");
+        let [pressed, tried] = [&presses, &unseen].map(|rows| full_scale(rows));
+        let [presses, weights] = [(presses, 2 * seed), (weights, 2 * seed + 1)]
+            .map(|(rows, seed)| recorded(rows, &changes, &wiring, &pressed, seed));
+        let unseen = recorded(unseen, &changes, &wiring, &tried, 2 * seed + 1_001);
+        Self { name: case.name, table, wiring, background, presses, weights, unseen }
+    }
+
+    fn played(&self) -> (Vec<Window>, Vec<Placement>) {
+        let (mut gatherer, mut at_s) = (WindowCollector::default(), 0.0);
+        windows(&self.presses, PRESS_S, &mut gatherer, &mut at_s);
+        let moments = windows(&self.weights, WEIGHT_S, &mut gatherer, &mut at_s);
+        let placement =
+            |(at_s, place_mm): (f64, [f64; 2])| Placement { line: 0, at_s, place_mm, weight_g: WEIGHT_G };
+        (gatherer.finish(), moments.into_iter().zip(MARKS_MM).map(placement).collect())
+    }
+
+    /// Mean errors of place (mm) and force (N) at the Bayesian Cramér–Rao bound of the presses and the weight.
+    fn bound(&self, unknown: Unknown) -> [f64; 2] {
+        let [mm, n] = [OFF_MM, WEIGHT_OFF_N].map(|deviation: f64| deviation.powi(-2));
+        let presses = loaded(&self.presses).map(|contact| (contact, [0.0; 5]));
+        let weights = loaded(&self.weights).map(|contact| (contact, [mm, mm, n, n, n]));
+        let known: Vec<Labelled> = presses.chain(weights).collect();
+        let hidden = Hidden { table: self.table, background: &self.background, wiring: &self.wiring };
+        let information = Information::of(hidden, unknown, &known);
+        let unseen: Vec<Contact> = loaded(&self.unseen).collect();
+        hidden.bound(&unseen, |contact| information.unknown(contact))
+    }
+}
+
+fn loaded(recorded: &Recorded) -> impl Iterator<Item = Contact> {
+    recorded.truths.iter().copied().filter(|contact| contact.force != [0.0; 3])
 }
 
 /// The plan with a reading of the untouched pad behind each press: fingers lift.
@@ -91,25 +135,21 @@ fn apart(rows: Vec<crate::plan::Row>) -> Vec<crate::plan::Row> {
 
 /// Errors of place and force against the truth, and the share of truths in the stated regions.
 fn tried(seed: u64) -> Summary {
-    let case = &CASES[..FIELDS][seed as usize % FIELDS];
-    let wiring = Wiring::drawn_wide(seed);
-    let background = Background::drawn(case.table, BACKGROUND, BACKGROUND_MM, seed);
-    let changes =
-        Changes { table: case.table, memory: Memory::Nothing, rig: &[], background: Some(&background) };
-    let (windows, placements) = played(&changes, &wiring, seed);
+    let pad = Pad::drawn(seed);
+    let (windows, placements) = pad.played();
     let nominal = PadField::nominal();
     let device = Device::nominal();
-    let pad = SimulatedPad { solve: &field_cache::solve, ..SimulatedPad::known(&device, &nominal) };
-    let found: AtHome = calibrated(&windows, &placements, &pad, None, &|_, _| ()).unwrap();
-    let unseen = plan(UNSEEN, seed, "calibrated unseen");
-    let full_scale = full_scale(&unseen);
-    let unseen = recorded(unseen, &changes, &wiring, &full_scale, 2 * seed + 1_001);
+    let known = SimulatedPad { solve: &field_cache::solve, ..SimulatedPad::known(&device, &nominal) };
+    let found: AtHome = calibrated(&windows, &placements, &known, None, &|_, _| ()).unwrap();
+    let unseen = &pad.unseen;
     let decoded = decoded_by(&found.calibration.decoder(), unseen.measured.csv().as_bytes(), &unseen.truths);
     let summary = Summary::of(&decoded, |_| true);
     let Summary { place_mm, force_n, covered, .. } = summary;
     println!(
-        "pad {seed:2}, {}: {place_mm:.3} mm, {force_n:.4} N, {covered:.3} inside, {} presses",
-        case.name, found.presses
+        "pad {seed:2}, {}: {place_mm:.3} mm, {force_n:.4} N, {covered:.3} inside, {} presses, background {:.2} %",
+        pad.name,
+        found.presses,
+        100.0 * found.calibration.background
     );
     summary
 }
@@ -120,7 +160,7 @@ const COVERED_POOLED: RangeInclusive<f64> = 0.9..=0.98;
 const COVERED_LEAST: f64 = 0.8;
 
 #[test]
-#[ignore = "proof: 30 s: tests/lab and tests/program have smaller ones on the simulator's field"]
+#[ignore = "proof: 60 s: tests/lab and tests/program have smaller ones on the simulator's field"]
 fn a_thousand_presses_without_labels_and_a_weight() {
     let pad = tried(6);
     assert!(pad.place_mm <= WORST_MOST_MM && pad.covered >= COVERED_LEAST, "{pad:?}");
@@ -143,4 +183,23 @@ fn a_thousand_presses_without_labels_and_a_weight_on_twenty_pads() {
         pads.iter().filter(|it| it.place_mm > WORST_MOST_MM || it.covered < COVERED_LEAST).collect();
     assert!(far.is_empty(), "{far:?}");
     assert!(COVERED_POOLED.contains(&covered), "{covered}");
+}
+
+/// What is asked of forces is more than the presses tell where moduli and poses are known no better than hands and materials have them.
+#[test]
+#[ignore = "proof: 150 s: the bound of six pads, one of each field, with what is known of it and what is not"]
+fn what_a_thousand_presses_without_labels_tell_at_best() {
+    for seed in 1..=6 {
+        let pad = Pad::drawn(seed);
+        let bound = |background, device| pad.bound(Unknown { background, device });
+        let bounds = [(false, false), (false, true), (true, false), (true, true)]
+            .map(|(background, device)| bound(background, device));
+        println!(
+            "pad {seed}, {}: gains and leaks {:.3?}, device {:.3?}, background {:.3?}, all {:.3?}",
+            pad.name, bounds[0], bounds[1], bounds[2], bounds[3]
+        );
+        // What is known cannot make it worse.
+        assert!(bounds.iter().all(|[mm, n]| bounds[0][0] <= *mm && bounds[0][1] <= *n), "{bounds:?}");
+        assert!(bounds[3][1] > MEDIANS_MOST[1], "{bounds:?}");
+    }
 }

@@ -148,7 +148,11 @@ impl Hidden<'_> {
     }
 
     /// Mean errors of place (mm) and force (N) at the bound, with what is not known of the pad.
-    fn bound(&self, contacts: &[Contact], unknown: impl Fn(&Contact) -> [[f64; 9]; 9]) -> [f64; 2] {
+    pub(super) fn bound(
+        &self,
+        contacts: &[Contact],
+        unknown: impl Fn(&Contact) -> [[f64; 9]; 9],
+    ) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for contact in contacts {
             let (slopes, variances) = self.linearised(contact);

@@ -13,6 +13,7 @@ mod learned;
 mod memory;
 mod pad;
 mod report;
+mod unlabelled;
 
 use std::ops::RangeInclusive;
 

@@ -50,12 +50,15 @@ impl BackgroundDeviations {
     /// ```
     ///
     /// where the share s is that of a degree in a background of size 1, and γ how far the contacts determine a coefficient; and at
-    /// least [`LEAST`] of that share.
+    /// least [`LEAST`] of that share. Without a coefficient they stay what they are.
     pub(crate) fn reestimated(&self, coefficients: impl Iterator<Item = Coefficient>) -> Self {
         let mut sums = [[0.0; 2]; DEGREES];
         for Coefficient { degree, value, variance } in coefficients {
             sums[degree][0] += value * value;
             sums[degree][1] += (1.0 - variance / self.of(degree).powi(2)).clamp(0.0, 1.0);
+        }
+        if sums == [[0.0; 2]; DEGREES] {
+            return *self;
         }
         let told: f64 = sums.iter().map(|[_, freedom]| freedom).sum();
         let pooled = sums.iter().enumerate().map(|(n, [square, _])| square / share(n).powi(2)).sum::<f64>();

@@ -3,7 +3,7 @@
 //! Channel k reads at a contact
 //!
 //! ```text
-//! yₖ = zₖ + Σₗ (1 + X)ₖₗ sₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ,    sₗ = S (1 + αₗ ΔT) (gₗ eₗ + dₗ)
+//! yₖ = zₖ + Σₗ (1 + X)ₖₗ sₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ,    sₗ = (1 + αₗ ΔT) (S gₗ eₗ + dₗ)
 //! eₗ = (1 + A b) Σₐ Fₐ Eₗₐ(x, y),    E = G + b ∇²G + Σⱼ wⱼ(qⱼ) ∂G/∂pⱼ,    dₗ = ρ (1 + A b) Σₐ Fₐ Dₗₐ(x, y)
 //! ```
 //!
@@ -79,7 +79,8 @@ impl ParameterLayout {
         self.background(0, 0) + 3 * CHANNELS * self.terms
     }
 
-    const fn background(&self, channel: usize, axis: usize) -> usize {
+    /// Place of the first coefficient of the background in a channel's map of a force.
+    pub(crate) const fn background(&self, channel: usize, axis: usize) -> usize {
         PHYSICAL + self.physical.len() + (3 * channel + axis) * self.terms
     }
 
@@ -157,6 +158,12 @@ impl ParameterLayout {
     pub(crate) fn background_degrees(&self) -> impl Iterator<Item = (usize, usize)> {
         let degrees = (0..=BACKGROUND_DEGREE).flat_map(|n| std::iter::repeat_n(n, n + 1));
         degrees.cycle().zip(self.background(0, 0)..self.size())
+    }
+
+    /// Axis of the force and place of each of them.
+    pub(crate) fn background_axes(&self) -> impl Iterator<Item = (usize, usize)> {
+        let axes = (0..3).flat_map(|axis| std::iter::repeat_n(axis, self.terms));
+        axes.cycle().zip(self.background(0, 0)..self.size())
     }
 
     /// What each module's displacement has of the mean of all, by its parameters' places: to contacts with labels that is the stage's.
@@ -362,15 +369,14 @@ impl ParameterLayout {
         }
     }
 
-    /// From maps of the strains to those of the channels: (1 + X)ₖₗ S (gₗ Eₗ + Dₗ), with D by these values of the polynomials.
+    /// From maps of the strains to those of the channels: (1 + X)ₖₗ (S gₗ Eₗ + Dₗ), with D by these values of the polynomials.
     fn channel_maps(&self, values: &[f64], scale: &Maps, strains: &Maps, terms: &[f64; TERMS]) -> Maps {
         let mut signals: Maps =
-            std::array::from_fn(|channel| strains[channel].map(|map| values[GAINS + channel] * map));
+            std::array::from_fn(|channel| strains[channel].map(|map| Self::gain(values, channel) * map));
         self.add_background(values, scale, terms, &mut signals);
-        let factor = Self::scale_factor(values);
         Self::coupling(values).map(|shares| {
             std::array::from_fn(|axis| {
-                factor * shares.iter().zip(&signals).map(|(share, from)| share * from[axis]).sum::<f64>()
+                shares.iter().zip(&signals).map(|(share, from)| share * from[axis]).sum::<f64>()
             })
         })
     }
@@ -425,7 +431,7 @@ impl ParameterLayout {
         })
     }
 
-    /// The signals at a contact, sₗ = S (1 + αₗ ΔT) (gₗ eₗ + dₗ).
+    /// The signals at a contact, sₗ = (1 + αₗ ΔT) (S gₗ eₗ + dₗ).
     fn signals(&self, values: &[f64], scale: &Maps, contact: &Measured) -> Signals {
         let Measured { knowledge, place, above_c, .. } = contact;
         let force_n = Self::force_now_n(values, contact);
@@ -433,11 +439,10 @@ impl ParameterLayout {
         let mut background = [[0.0; 3]; CHANNELS];
         self.add_background(values, scale, &place.terms, &mut background);
         let background_uv = background.map(|map| response(&map, &force_n));
-        let factor = Self::scale_factor(values);
-        let unit_gains = std::array::from_fn(|k| factor * (1.0 + values[GAIN_SLOPES + k] * above_c));
-        let unscaled_uv = std::array::from_fn(|k| values[GAINS + k] * strains_uv[k] + background_uv[k]);
-        let uv = std::array::from_fn(|k| unit_gains[k] * unscaled_uv[k]);
-        Signals { force_n, strains_uv, background_uv, unscaled_uv, unit_gains, uv }
+        let warmth = std::array::from_fn(|k| 1.0 + values[GAIN_SLOPES + k] * above_c);
+        let reference_uv = std::array::from_fn(|k| Self::gain(values, k) * strains_uv[k] + background_uv[k]);
+        let uv = std::array::from_fn(|k| warmth[k] * reference_uv[k]);
+        Signals { force_n, strains_uv, background_uv, reference_uv, warmth, uv }
     }
 
     /// The model f(θ) of the channels at a contact, µV: (1 + X) s + z + memory.
@@ -459,24 +464,24 @@ impl ParameterLayout {
         let (factor, written) = (Self::scale_factor(values), Self::reference_gain(values));
         let of_signal = |channel: usize| {
             let mut slopes = vec![0.0; self.size()];
-            let unit_gain = signals.unit_gains[channel];
-            let gain = unit_gain * values[GAINS + channel];
-            // ∂/∂gₖ = S (1 + αₖ ΔT) eₖ, ∂/∂αₖ = ΔT S (gₖ eₖ + dₖ), ∂/∂ln S = sₖ, ∂/∂A = b sₖ/(1 + A b).
-            slopes[GAINS + channel] = unit_gain * signals.strains_uv[channel];
-            slopes[GAIN_SLOPES + channel] = factor * above_c * signals.unscaled_uv[channel];
-            slopes[LOG_SCALE] = signals.uv[channel];
+            let warmth = signals.warmth[channel];
+            let gain = warmth * Self::gain(values, channel);
+            // ∂/∂gₖ = S (1 + αₖ ΔT) eₖ, ∂/∂αₖ = ΔT (S gₖ eₖ + dₖ), ∂/∂ln S = (1 + αₖ ΔT) S gₖ eₖ, ∂/∂A = b sₖ/(1 + A b).
+            slopes[GAINS + channel] = factor * warmth * signals.strains_uv[channel];
+            slopes[GAIN_SLOPES + channel] = above_c * signals.reference_uv[channel];
+            slopes[LOG_SCALE] = gain * signals.strains_uv[channel];
             slopes[AGEING] = to_come * signals.uv[channel] / gain_before_ageing;
             // ∂/∂ln ρ where forces stay: the background's part.
-            slopes[RIG_AT + REFERENCE_GAIN] = unit_gain * signals.background_uv[channel];
+            slopes[RIG_AT + REFERENCE_GAIN] = warmth * signals.background_uv[channel];
             // With h = S (1 + αₖ ΔT) gₖ: ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ.
             slopes[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
             let physical = weights.iter().zip(&place.sensitivities);
             for (slope, ([_, by_parameter], maps)) in slopes[PHYSICAL..].iter_mut().zip(physical) {
                 *slope = gain * by_parameter * response(&maps[channel], force_n);
             }
-            // ∂/∂βₖₐₜ = ρ S (1 + αₖ ΔT) Fₐ scaleₖₐ Uₜ.
+            // ∂/∂βₖₐₜ = ρ (1 + αₖ ΔT) Fₐ scaleₖₐ Uₜ.
             for axis in 0..3 {
-                let factor = unit_gain * written * scale[channel][axis] * force_n[axis];
+                let factor = warmth * written * scale[channel][axis] * force_n[axis];
                 let terms = slopes[self.background(channel, axis)..].iter_mut().zip(&place.terms);
                 terms.for_each(|(slope, term)| *slope = factor * term);
             }
@@ -506,10 +511,10 @@ struct Signals {
     strains_uv: [f64; CHANNELS],
     /// dₗ.
     background_uv: [f64; CHANNELS],
-    /// gₗ eₗ + dₗ.
-    unscaled_uv: [f64; CHANNELS],
-    /// S (1 + αₗ ΔT).
-    unit_gains: [f64; CHANNELS],
+    /// S gₗ eₗ + dₗ.
+    reference_uv: [f64; CHANNELS],
+    /// 1 + αₗ ΔT.
+    warmth: [f64; CHANNELS],
     /// sₗ.
     uv: [f64; CHANNELS],
 }

@@ -49,7 +49,9 @@ fn channels_read_by_the_law() {
         let mut background = [[0.0; 3]; CHANNELS];
         layout.add_background(values, scale, &contact.place.terms, &mut background);
         for (channel, (map, background)) in strains.iter_mut().zip(background).enumerate() {
-            map.iter_mut().zip(background).for_each(|(map, it)| *map += it / values[GAINS + channel]);
+            map.iter_mut()
+                .zip(background)
+                .for_each(|(map, it)| *map += it / ParameterLayout::gain(values, channel));
         }
         let force_n = ParameterLayout::force_now_n(values, contact);
         let mut uv = strains.map(|map| response(&map, &force_n));

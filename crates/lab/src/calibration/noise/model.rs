@@ -94,6 +94,19 @@ impl NoiseModel {
         Some(self.label_information(residual, &weights)?.solve(&projected(residual, &weights)))
     }
 
+    /// A gradient by the force that the channels say as one by the channels: Kᵀ w = W J M⁻¹ (0, 0, w).
+    pub(crate) fn through_force(
+        &self,
+        residual: &Residual,
+        by_force_n: &[f64; 3],
+    ) -> Option<[f64; CHANNELS]> {
+        let variances = self.noise.variances(&residual.uv, residual.force_n).noise;
+        let weights = variances.map(|variance| 1.0 / variance);
+        let [fx, fy, fz] = *by_force_n;
+        let by = self.label_information(residual, &weights)?.solve(&[0.0, 0.0, fx, fy, fz]);
+        Some(std::array::from_fn(|k| weights[k] * dot(&residual.label_jacobian[k], &by)))
+    }
+
     /// `None` where M is not positive definite or not finite.
     pub(crate) fn marginal_precision(&self, residual: &Residual) -> Option<MarginalPrecision> {
         let variances = self.variances(residual);

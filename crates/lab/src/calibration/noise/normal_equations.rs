@@ -88,6 +88,11 @@ impl NormalEquations {
         sums.for_each(|(sum, slope)| *sum += slope * residual / variance);
     }
 
+    /// g ← g + c v, where v has the first entries.
+    pub(crate) fn pull(&mut self, by: f64, direction: &[f64]) {
+        self.gradient.iter_mut().zip(direction).for_each(|(sum, entry)| *sum += by * entry);
+    }
+
     /// δ = H⁻¹ g; `None` where H is not positive definite or not finite.
     pub(crate) fn solved(mut self) -> Option<GaussNewtonStep> {
         self.add_collected();

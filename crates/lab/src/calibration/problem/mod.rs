@@ -295,8 +295,49 @@ impl<'f> Problem<'f> {
         mean: &[f64],
         precisions: &[f64],
     ) -> Option<GaussNewtonStep> {
-        let prior = NormalEquations::of_prior(precisions, mean, values);
+        let mut prior = NormalEquations::of_prior(precisions, mean, values);
+        if self.layout.is_play && self.layout.terms > 0 {
+            self.pull_back(&mut prior, values, &estimates.noise_model, precisions)?;
+        }
         self.equations(prior, values, estimates, |_, _, _| ())?.solved()
+    }
+
+    /// Takes back by how much the most probable background makes forces too large.
+    ///
+    /// Nobody knows the forces F of presses without labels. Where the field reads less of a force they are larger, and the background that
+    /// says as much is smaller: its density p(β) is larger, as exp(−½ Σ β²/τ²), though there is no more of β that is probable. Integrated over β
+    /// there is −½ ln det H as well, whose derivative by ln F is the opposite at the τ of the evidence. So the gradient gets Σᵢ wᵢ ∂Fᵢ/∂θ, with
+    /// Σᵢ wᵢ Fᵢ = Σ β²/τ² for each axis of the force; a contact counts by the share of its force along that axis.
+    fn pull_back(
+        &self,
+        equations: &mut NormalEquations,
+        values: &[f64],
+        noise_model: &NoiseModel,
+        precisions: &[f64],
+    ) -> Option<()> {
+        let mut squares = [0.0; 3];
+        self.layout
+            .background_axes()
+            .for_each(|(axis, at)| squares[axis] += values[at].powi(2) * precisions[at]);
+        let shares = |contact: &Measured| {
+            let square = dot(&contact.force_n, &contact.force_n).max(f64::MIN_POSITIVE);
+            contact.force_n.map(|n| n * n / square)
+        };
+        let mut sums = [f64::MIN_POSITIVE; 3];
+        for (_, contact) in &self.contacts {
+            sums.iter_mut().zip(shares(contact)).for_each(|(sum, share)| *sum += share);
+        }
+        let first = self.layout.background(0, 0);
+        for (_, contact) in &self.contacts {
+            let residual = self.residual(values, contact);
+            let square = dot(&contact.force_n, &contact.force_n).max(f64::MIN_POSITIVE);
+            let by_force: [f64; 3] =
+                std::array::from_fn(|axis| squares[axis] / sums[axis] * contact.force_n[axis] / square);
+            let by_channel = noise_model.through_force(&residual, &by_force)?;
+            let rows = self.slopes(values, contact, &residual).whole();
+            by_channel.iter().zip(&rows).for_each(|(by, row)| equations.pull(*by, &row[..first]));
+        }
+        Some(())
     }
 
     /// Contribution of all contacts and jumps to the normal equations of a prior about θ. Where these have more unknowns than θ, `widen` adds the

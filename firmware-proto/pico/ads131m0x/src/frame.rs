@@ -52,12 +52,6 @@ impl Status {
         self.0 & 0x1000 != 0
     }
 
-    /// Whether the converter found itself out of step with the others and took up a new beginning.
-    #[must_use]
-    pub const fn resynchronized(self) -> bool {
-        self.0 & 0x4000 != 0
-    }
-
     /// Whether all of the first `channels` channels have a code that was not read before.
     #[must_use]
     pub const fn all_new(self, channels: usize) -> bool {
@@ -142,6 +136,6 @@ mod tests {
         assert!(Status(0x0500).was_reset() && !Status(0x0500).all_new(3));
         assert!(Status(0x0107).all_new(3) && !Status(0x0107).was_reset());
         assert!(!Status(0x0105).all_new(3));
-        assert!(Status(0x1000).input_damaged() && Status(0x4000).resynchronized());
+        assert!(Status(0x1000).input_damaged());
     }
 }

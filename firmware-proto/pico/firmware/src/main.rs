@@ -121,7 +121,7 @@ fn main() -> ! {
 
         if now_us >= times.measured_us + MEASURE_PERIOD_US {
             times.measured_us = now_us;
-            board.excitation.see(measure.excitation_mv());
+            board.excitation.see(measure.excitation_uv());
             board.temperature_centi_c = measure.temperature_centi_c();
         }
         let state = match () {

@@ -28,23 +28,24 @@ impl Measure {
     }
 
     fn microvolts(&self, input: u8) -> u32 {
+        adc().cs().modify(|_, w| unsafe { w.ainsel().bits(input) });
         let reading = || {
-            adc().cs().modify(|_, w| unsafe { w.ainsel().bits(input) }.start_once().set_bit());
+            adc().cs().modify(|_, w| w.start_once().set_bit());
             while adc().cs().read().ready().bit_is_clear() {}
             u32::from(adc().result().read().result().bits())
         };
         let sum: u32 = (0..READINGS).map(|_| reading()).sum();
-        sum * (REFERENCE_UV / CODES) / READINGS
+        (u64::from(sum) * u64::from(REFERENCE_UV) / u64::from(CODES * READINGS)) as u32
     }
 
-    /// The excitation now, in millivolts.
-    pub(crate) fn excitation_mv(&self) -> u16 {
-        (self.microvolts(EXCITATION) / 1_000) as u16
+    /// The excitation now, in microvolts.
+    pub(crate) fn excitation_uv(&self) -> u32 {
+        self.microvolts(EXCITATION)
     }
 
     /// The excitation as it is followed from now on.
     pub(crate) fn excitation(&self) -> Excitation {
-        Excitation::new(self.excitation_mv())
+        Excitation::new(self.excitation_uv())
     }
 
     /// The chip's temperature in hundredths of a degree: 27 °C at 0.706 V, and 1.721 mV less for each degree more.

@@ -111,19 +111,11 @@ pub(crate) fn start() {
     }
 }
 
-/// Ends sampling, and leaves the bus and the converters alone.
+/// Ends sampling: what is on its way comes first, which the bus's own clock sees to, and then bus and converters are at rest.
 pub(crate) fn stop() {
     NVIC::mask(Interrupt::IO_IRQ_BANK0);
+    while BUSY.load(Ordering::Acquire) {}
     NVIC::mask(Interrupt::DMA_IRQ_0);
-    dma().chan_abort().write(|w| unsafe { w.bits(1 << OUT | 1 << IN) });
-    while dma().chan_abort().read().bits() != 0 {}
-    SELECT_PINS.into_iter().for_each(|pin| drive(pin, true));
-    // SAFETY: the bus belongs to who stopped sampling.
-    let spi = unsafe { &*pac::SPI0::ptr() };
-    while spi.sspsr().read().bsy().bit_is_set() {}
-    while spi.sspsr().read().rne().bit_is_set() {
-        let _ = spi.sspdr().read();
-    }
 }
 
 /// The oldest sample that waits.

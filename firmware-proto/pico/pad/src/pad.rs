@@ -122,7 +122,7 @@ mod tests {
 
     use super::*;
 
-    const BOARD: Board = Board { excitation: Excitation::new(2_500), temperature_centi_c: 2_150 };
+    const BOARD: Board = Board { excitation: Excitation::new(2_500_000), temperature_centi_c: 2_150 };
 
     fn pad() -> Pad {
         let digits = digits([0xE6, 0x60, 0x58, 0x38, 0x83, 0x0A, 0xBC, 0x01]);
@@ -156,7 +156,7 @@ mod tests {
     fn a_wrong_supply_is_told_beside_what_else_is_wrong() {
         let mut pad = pad();
         sample(&mut pad, Status::OK, &BOARD);
-        let low = Board { excitation: Excitation::new(2_000), ..BOARD };
+        let low = Board { excitation: Excitation::new(2_000_000), ..BOARD };
         let told = sample(&mut pad, Status::OK.with_out_of_range(4), &low);
         assert_eq!(told.status, Status::OK.with_out_of_range(4).with_supply_fault());
     }

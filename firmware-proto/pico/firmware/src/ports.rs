@@ -4,6 +4,7 @@ use firmware_proto::command::Command;
 use firmware_proto::frame::{Message, WireError};
 use firmware_proto::hid::{self, REPORT_LEN};
 use firmware_proto::link::{CommandReceiver, encode_message};
+use firmware_proto::sample::Sample;
 use firmware_proto::ENCODED_MAX;
 use pad::light::State;
 use pad::outbox::Outbox;
@@ -52,6 +53,9 @@ pub(crate) struct Ports<'a> {
     receiver: CommandReceiver,
     reports: [[u8; REPORT_LEN]; REPORTS],
     waiting: usize,
+    serial_open: bool,
+    serial_begun: bool,
+    hid_begun: bool,
 }
 
 impl<'a> Ports<'a> {
@@ -74,6 +78,9 @@ impl<'a> Ports<'a> {
             receiver: CommandReceiver::new(),
             reports: [[0; REPORT_LEN]; REPORTS],
             waiting: 0,
+            serial_open: false,
+            serial_begun: false,
+            hid_begun: false,
         }
     }
 
@@ -108,16 +115,17 @@ impl<'a> Ports<'a> {
         }
     }
 
-    /// Sends a sample both ways.
-    pub(crate) fn send(&mut self, sample: &Message, rate: Rate) {
-        if !self.is_configured() {
-            return;
+    /// Sends a sample both ways. The first that a port takes after a start says that the pad started, whenever the host came.
+    pub(crate) fn send(&mut self, sample: &Sample, rate: Rate) {
+        let marked = Sample { status: sample.status.with_restarted(), ..*sample };
+        let first = |begun| Message::Sample(if begun { *sample } else { marked });
+        if self.is_configured() {
+            self.serial_begun |= self.post(&first(self.serial_begun));
+            if rate.hz() <= REPORTS_MAX_HZ {
+                self.hid_begun |= self.report(&first(self.hid_begun));
+            }
+            self.hand_on();
         }
-        self.post(sample);
-        if rate.hz() <= REPORTS_MAX_HZ {
-            self.report(sample);
-        }
-        self.hand_on();
     }
 
     /// Answers where the command came from.
@@ -125,23 +133,23 @@ impl<'a> Ports<'a> {
         match port {
             Port::Serial => self.post(answer),
             Port::Hid => self.report(answer),
-        }
+        };
         self.hand_on();
     }
 
-    fn post(&mut self, message: &Message) {
-        if self.serial.dtr() {
-            let mut frame = [0; ENCODED_MAX];
-            let len = encode_message(message, &mut frame);
-            self.outbox.post(&frame[..len]);
-        }
+    /// Says whether there was room.
+    fn post(&mut self, message: &Message) -> bool {
+        let mut frame = [0; ENCODED_MAX];
+        let len = encode_message(message, &mut frame);
+        self.serial.dtr() && self.outbox.post(&frame[..len])
     }
 
-    fn report(&mut self, message: &Message) {
-        if let Some(slot) = self.reports.get_mut(self.waiting) {
-            *slot = hid::encode_message(message);
-            self.waiting += 1;
-        }
+    /// Says whether there was room.
+    fn report(&mut self, message: &Message) -> bool {
+        let Some(slot) = self.reports.get_mut(self.waiting) else { return false };
+        *slot = hid::encode_message(message);
+        self.waiting += 1;
+        true
     }
 
     /// The next command from either port.
@@ -159,9 +167,11 @@ impl<'a> Ports<'a> {
         came.then(|| (Port::Hid, hid::decode_command(&report)))
     }
 
-    /// Whether the host closed the serial port at the speed that means the bootloader.
-    pub(crate) fn asks_for_bootloader(&self) -> bool {
-        self.serial.line_coding().data_rate() == BOOTLOADER_BAUD && !self.serial.dtr()
+    /// Whether the host has just closed the serial port at the speed that means the bootloader.
+    pub(crate) fn asks_for_bootloader(&mut self) -> bool {
+        let is_open = self.serial.dtr();
+        let was_open = core::mem::replace(&mut self.serial_open, is_open);
+        was_open && !is_open && self.serial.line_coding().data_rate() == BOOTLOADER_BAUD
     }
 
     /// What the light says of the host.

@@ -70,11 +70,16 @@ export class Board {
     ));
     this.wire();
     this.wireFlash();
+    const dog = mcu.peripherals[0x40058];
     if (watchdog) {
-      mcu.peripherals[0x40058].scratchData.set(watchdog.scratchData);
-      mcu.peripherals[0x40058].reason = watchdog.reason;
+      dog.scratchData.set(watchdog.scratchData);
+      dog.reason = watchdog.reason;
     }
-    mcu.peripherals[0x40058].onWatchdogTrigger = () => (this.restarting = true);
+    dog.onWatchdogTrigger = () => {
+      // The emulator's would bite again and again before anything else runs.
+      dog.alarm.enable = false;
+      this.restarting = true;
+    };
     this.boot();
     this.onStart?.();
   }

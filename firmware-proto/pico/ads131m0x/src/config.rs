@@ -65,8 +65,16 @@ pub enum Oversampling {
 
 impl Oversampling {
     /// All, the highest first.
-    pub const FROM_HIGHEST: [Self; 8] =
-        [Self::X16256, Self::X8192, Self::X4096, Self::X2048, Self::X1024, Self::X512, Self::X256, Self::X128];
+    pub const FROM_HIGHEST: [Self; 8] = [
+        Self::X16256,
+        Self::X8192,
+        Self::X4096,
+        Self::X2048,
+        Self::X1024,
+        Self::X512,
+        Self::X256,
+        Self::X128,
+    ];
 
     /// Cycles of the modulator. The highest is no power of two.
     #[must_use]

@@ -32,7 +32,9 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
         match self {
             Self::Bus(error) => write!(f, "the bus failed: {error:?}"),
             Self::Damaged => write!(f, "the converter's frame is damaged, or no converter answers"),
-            Self::Answer { expected, found } => write!(f, "the converter answers {found:#06x}, not {expected:#06x}"),
+            Self::Answer { expected, found } => {
+                write!(f, "the converter answers {found:#06x}, not {expected:#06x}")
+            }
         }
     }
 }
@@ -97,7 +99,10 @@ impl<D: SpiDevice, const CHANNELS: usize> Device<D, CHANNELS> {
         let contents = [Config::MODE, config.clock(CHANNELS), config.gains(CHANNELS)];
         let [mode, clock, gains] = contents;
         let count = contents.len();
-        self.command(&[write_registers(register::MODE, count), mode, clock, gains], written(register::MODE, count))?;
+        self.command(
+            &[write_registers(register::MODE, count), mode, clock, gains],
+            written(register::MODE, count),
+        )?;
         for (address, expected) in (register::MODE..).zip(contents) {
             let found = self.register(address)?;
             if found != expected {
@@ -148,7 +153,8 @@ mod tests {
 
     /// What goes to the converter: words and their checksum, filled up to a frame.
     fn to(words: &[u16]) -> Vec<u8> {
-        let mut bytes = words.iter().flat_map(|word| [(word >> 8) as u8, *word as u8, 0]).collect::<Vec<u8>>();
+        let mut bytes =
+            words.iter().flat_map(|word| [(word >> 8) as u8, *word as u8, 0]).collect::<Vec<u8>>();
         let checksum = crc16(&bytes);
         bytes.extend([(checksum >> 8) as u8, checksum as u8, 0]);
         bytes.resize(bytes.len().max(15), 0);

@@ -78,7 +78,8 @@ impl<const CHANNELS: usize> Frame<CHANNELS> {
         if crc16(body) != u16::from_be_bytes([checksum[0], checksum[1]]) {
             return None;
         }
-        let mut words = body.chunks_exact(WORD_LEN).map(|word| i32::from_be_bytes([word[0], word[1], word[2], 0]));
+        let mut words =
+            body.chunks_exact(WORD_LEN).map(|word| i32::from_be_bytes([word[0], word[1], word[2], 0]));
         let answer = (words.next()? as u32 >> 16) as u16;
         let mut codes = [0; CHANNELS];
         for (code, word) in codes.iter_mut().zip(words) {
@@ -127,7 +128,10 @@ mod tests {
             assert_eq!(Frame::<3>::read(&bad), None, "bit {bit}");
         }
         assert_eq!(Frame::<3>::read(&good[..14]), None);
-        assert!(Frame::<3>::read(&[0; 15]).is_none() && Frame::<3>::read(&[0xFF; 15]).is_none(), "a dead line");
+        assert!(
+            Frame::<3>::read(&[0; 15]).is_none() && Frame::<3>::read(&[0xFF; 15]).is_none(),
+            "a dead line"
+        );
     }
 
     #[test]

@@ -6,7 +6,9 @@ use rp2040_hal as hal;
 
 use hal::clocks::ClocksManager;
 use hal::fugit::{HertzU32, RateExtU32};
-use hal::gpio::{FunctionNull, FunctionPwm, FunctionSioInput, FunctionSioOutput, FunctionSpi, Pin, PullNone, PullUp};
+use hal::gpio::{
+    FunctionNull, FunctionPwm, FunctionSioInput, FunctionSioOutput, FunctionSpi, Pin, PullNone, PullUp,
+};
 use hal::pac;
 use hal::pll::{PLLConfig, common_configs::PLL_USB_48MHZ, setup_pll_blocking};
 use hal::usb::UsbBus;
@@ -50,7 +52,8 @@ impl Chip {
         let crystal = setup_xosc_blocking(p.XOSC, CRYSTAL_HZ.Hz()).ok()?;
         watchdog.enable_tick_generation((CRYSTAL_HZ / 1_000_000) as u8);
         let mut clocks = ClocksManager::new(p.CLOCKS);
-        let system = PLLConfig { vco_freq: HertzU32::Hz(12 * SYSTEM_HZ), refdiv: 1, post_div1: 4, post_div2: 3 };
+        let system =
+            PLLConfig { vco_freq: HertzU32::Hz(12 * SYSTEM_HZ), refdiv: 1, post_div1: 4, post_div2: 3 };
         let frequency = crystal.operating_frequency();
         let system = setup_pll_blocking(p.PLL_SYS, frequency, system, &mut clocks, &mut p.RESETS).ok()?;
         let usb = setup_pll_blocking(p.PLL_USB, frequency, PLL_USB_48MHZ, &mut clocks, &mut p.RESETS).ok()?;
@@ -58,8 +61,9 @@ impl Chip {
 
         let sio = hal::Sio::new(p.SIO);
         let pins = hal::gpio::Pins::new(p.IO_BANK0, p.PADS_BANK0, sio.gpio_bank0, &mut p.RESETS);
-        let _: (Pin<_, FunctionSpi, PullNone>, Pin<_, FunctionSpi, PullNone>, Pin<_, FunctionSpi, PullUp>) =
-            (pins.gpio2.reconfigure(), pins.gpio3.reconfigure(), pins.gpio4.reconfigure());
+        let _: Pin<_, FunctionSpi, PullNone> = pins.gpio2.reconfigure();
+        let _: Pin<_, FunctionSpi, PullNone> = pins.gpio3.reconfigure();
+        let _: Pin<_, FunctionSpi, PullUp> = pins.gpio4.reconfigure();
         // A select that is driven high before it is an output selects nobody by accident.
         let _ = pins.gpio5.into_push_pull_output_in_state(hal::gpio::PinState::High);
         let _ = pins.gpio6.into_push_pull_output_in_state(hal::gpio::PinState::High);
@@ -74,10 +78,15 @@ impl Chip {
         let _ = light.set_low();
 
         let resets = &p.RESETS;
-        resets.reset().modify(|_, w| w.adc().clear_bit().spi0().clear_bit().dma().clear_bit().pwm().clear_bit());
+        resets
+            .reset()
+            .modify(|_, w| w.adc().clear_bit().spi0().clear_bit().dma().clear_bit().pwm().clear_bit());
         while {
             let done = resets.reset_done().read();
-            done.adc().bit_is_clear() || done.spi0().bit_is_clear() || done.dma().bit_is_clear() || done.pwm().bit_is_clear()
+            done.adc().bit_is_clear()
+                || done.spi0().bit_is_clear()
+                || done.dma().bit_is_clear()
+                || done.pwm().bit_is_clear()
         } {}
 
         let timer = hal::Timer::new(p.TIMER, &mut p.RESETS, &clocks);

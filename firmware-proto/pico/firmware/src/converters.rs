@@ -115,13 +115,15 @@ impl SpiDevice for Selected {
                     for byte in bytes.iter() {
                         let _ = Self::exchange(*byte);
                     }
-                },
+                }
                 Operation::Transfer(read, write) => {
                     for (index, byte) in read.iter_mut().enumerate() {
                         *byte = Self::exchange(write.get(index).copied().unwrap_or(0));
                     }
                 }
-                Operation::TransferInPlace(bytes) => bytes.iter_mut().for_each(|byte| *byte = Self::exchange(*byte)),
+                Operation::TransferInPlace(bytes) => {
+                    bytes.iter_mut().for_each(|byte| *byte = Self::exchange(*byte))
+                }
                 Operation::DelayNs(ns) => cortex_m::asm::delay(*ns / 7),
             }
         }

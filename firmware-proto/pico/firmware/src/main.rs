@@ -82,7 +82,8 @@ fn main() -> ! {
     let mut pad = Pad::new(serial_number, rate);
     let mut reader = FrameReader::default();
     let mut converters = Converters::new(chip.timer);
-    let mut board = Board { excitation: measure.excitation(), temperature_centi_c: measure.temperature_centi_c() };
+    let mut board =
+        Board { excitation: measure.excitation(), temperature_centi_c: measure.temperature_centi_c() };
     let mut well = converters.begin(rate);
     let now_us = board::now_us();
     let mut times = Times { sampled_us: now_us, told_us: now_us, begun_us: now_us, measured_us: now_us };

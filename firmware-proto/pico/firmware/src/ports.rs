@@ -1,11 +1,11 @@
 //! Both ways to the host: a serial port and a HID, each with the same messages and commands.
 
+use firmware_proto::ENCODED_MAX;
 use firmware_proto::command::Command;
 use firmware_proto::frame::{Message, WireError};
 use firmware_proto::hid::{self, REPORT_LEN};
 use firmware_proto::link::{CommandReceiver, encode_message};
 use firmware_proto::sample::Sample;
-use firmware_proto::ENCODED_MAX;
 use pad::light::State;
 use pad::outbox::Outbox;
 use pad::rate::Rate;
@@ -62,7 +62,10 @@ impl<'a> Ports<'a> {
     pub(crate) fn new(bus: &'a UsbBusAllocator<UsbBus>, serial_number: &'a str, product: &'a str) -> Self {
         let serial = SerialPort::new_with_store(bus, [0; STORE], [0; STORE]);
         let hid = HIDClass::new(bus, hid::REPORT_DESCRIPTOR, 1);
-        let strings = StringDescriptors::default().manufacturer("tactpad").product(product).serial_number(serial_number);
+        let strings = StringDescriptors::default()
+            .manufacturer("tactpad")
+            .product(product)
+            .serial_number(serial_number);
         let built = UsbDeviceBuilder::new(bus, UsbVidPid(hid::VENDOR_ID, hid::PRODUCT_ID))
             .device_release(RELEASE)
             .composite_with_iads()

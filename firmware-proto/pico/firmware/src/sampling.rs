@@ -114,7 +114,9 @@ pub(crate) fn start() {
 /// Ends sampling: what is on its way comes first, which the bus's own clock sees to, and then bus and converters are at rest.
 pub(crate) fn stop() {
     NVIC::mask(Interrupt::IO_IRQ_BANK0);
-    while BUSY.load(Ordering::Acquire) {}
+    while BUSY.load(Ordering::Acquire) {
+        core::hint::spin_loop();
+    }
     NVIC::mask(Interrupt::DMA_IRQ_0);
 }
 

@@ -103,7 +103,10 @@ mod tests {
             let excitation = Excitation::new(1_000 * mv);
             for code in [0, 1, -1, 100_000, -100_000, 8_000_000] {
                 let told = f64::from(excitation.at_nominal(code));
-                assert!((told - f64::from(code) * 2_500.0 / f64::from(mv)).abs() <= 0.5, "{code} at {mv} mV: {told}");
+                assert!(
+                    (told - f64::from(code) * 2_500.0 / f64::from(mv)).abs() <= 0.5,
+                    "{code} at {mv} mV: {told}"
+                );
             }
             assert!(!excitation.is_out_of_tolerance());
         }

@@ -111,11 +111,21 @@ mod tests {
 
     #[test]
     fn ends_of_the_range_are_out_of_range_each_on_its_own() {
-        for (code, out) in [(8_388_607, true), (-8_388_608, true), (8_355_840, true), (8_300_000, false), (-8_300_000, false)] {
+        for (code, out) in [
+            (8_388_607, true),
+            (-8_388_608, true),
+            (8_355_840, true),
+            (8_300_000, false),
+            (-8_300_000, false),
+        ] {
             for channel in 0..3 {
                 let mut codes = [0; 3];
                 codes[channel] = code;
-                let said = FrameReader::default().read(&[frame(GOOD, [0; 3]), frame(GOOD, [0; 3]), frame(GOOD, codes)]);
+                let said = FrameReader::default().read(&[
+                    frame(GOOD, [0; 3]),
+                    frame(GOOD, [0; 3]),
+                    frame(GOOD, codes),
+                ]);
                 assert_eq!(said.status, Status(u16::from(out) << (6 + channel)), "{code}");
                 assert!(!said.restart);
             }

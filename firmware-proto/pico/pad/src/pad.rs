@@ -166,7 +166,9 @@ mod tests {
         for silent in [WireError::Damaged, WireError::TooLong, WireError::NewerVersion(2)] {
             assert_eq!(pad.answer(Err(silent), 0), None);
         }
-        let Some(Message::Identity(identity)) = pad.answer(Ok(Command::Identify), 0) else { panic!("an identity") };
+        let Some(Message::Identity(identity)) = pad.answer(Ok(Command::Identify), 0) else {
+            panic!("an identity")
+        };
         assert_eq!(identity.serial_number.as_str(), "E6605838830ABC01");
         assert_eq!((identity.channels, identity.count_bits, identity.rate_hz), (9, 24, 250));
     }

@@ -71,7 +71,8 @@ mod tests {
             let rate = Rate::near(rate_hz).unwrap();
             let clock_hz = SYSTEM_HZ / u32::from(rate.division);
             assert!((300_000..=8_200_000).contains(&clock_hz), "{rate_hz} Hz: {clock_hz} Hz");
-            let real_hz = f64::from(SYSTEM_HZ) / f64::from(rate.division) / f64::from(rate.oversampling.clocks());
+            let real_hz =
+                f64::from(SYSTEM_HZ) / f64::from(rate.division) / f64::from(rate.oversampling.clocks());
             let deviation = (real_hz / f64::from(rate_hz) - 1.0).abs();
             assert!(deviation < 0.0051, "{rate_hz} Hz: {real_hz} Hz");
             assert!(rate.hz().abs_diff(rate_hz) <= 1 + rate_hz / 200, "{rate_hz} Hz: {} Hz", rate.hz());

@@ -26,7 +26,8 @@ pub(crate) fn flash_image(elf: &[u8]) -> Option<Vec<u8>> {
     let mut begins = false;
     for index in 0..count {
         let header = elf.get(table + index * size..)?;
-        let (kind, from, address, len) = (word(header, 0)?, word(header, 4)?, word(header, 12)?, word(header, 16)?);
+        let (kind, from, address, len) =
+            (word(header, 0)?, word(header, 4)?, word(header, 12)?, word(header, 16)?);
         if kind != LOADED || len == 0 {
             continue;
         }

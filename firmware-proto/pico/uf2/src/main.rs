@@ -28,7 +28,8 @@ fn main() -> ExitCode {
 
 fn convert(from: &str, to: &str) -> Result<usize, String> {
     let program = fs::read(from).map_err(|error| format!("{from} cannot be read: {error}"))?;
-    let image = elf::flash_image(&program).ok_or_else(|| format!("{from} is no linked program for a Raspberry Pi Pico"))?;
+    let image = elf::flash_image(&program)
+        .ok_or_else(|| format!("{from} is no linked program for a Raspberry Pi Pico"))?;
     fs::write(to, blocks::of(&image)).map_err(|error| format!("{to} cannot be written: {error}"))?;
     Ok(image.len())
 }

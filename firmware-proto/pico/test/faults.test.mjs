@@ -145,6 +145,26 @@ test('every fault is told and released within 100 ms, and the pad plays on witho
   assert.equal(board.resets, 0);
 });
 
+test('a board without converters says so by bits and light, and plays when they are there', () => {
+  const { board, host } = pressed();
+  const gone = (floating) => board.converters.forEach((converter) => (converter.faults.floating = floating));
+  const litMs = () => Array.from({ length: 100 }, () => (board.run(10), board.lit)).filter(Boolean).length * 10;
+  gone(true);
+  for (const converter of board.converters) converter.faults.silent = true;
+  board.run(300);
+  const told = host.samples.serial.at(-1);
+  assert.deepEqual([told.status, board.ns - told.ns < 15e6], [ALL, true]);
+  const [flashesMs, from] = [litMs(), host.samples.serial.length];
+  assert.ok(Math.abs(flashesMs - 200) <= 30, `${flashesMs} ms of a second lit`);
+  gone(false);
+  for (const converter of board.converters) converter.faults.silent = false;
+  board.run(RECOVERED_MAX_MS);
+  const later = host.samples.serial.length;
+  assert.ok(later > from);
+  assert.equal(litMs(), 1000);
+  assert.ok(host.samples.serial.slice(later).every((it) => it.status === 0));
+});
+
 test('a pad that is pulled out and put back begins anew', () => {
   const before = pressed();
   const beginNs = before.board.ns;

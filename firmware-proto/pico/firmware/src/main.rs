@@ -65,6 +65,7 @@ fn main() -> ! {
     let why = restart::why();
     let unique = flash::unique_number();
     let Some(mut chip) = Chip::take() else { fail(line!()) };
+    chip.watchdog.start(WATCHDOG_MS.millis());
     let serial_digits = digits(unique);
     let serial_text = core::str::from_utf8(&serial_digits).unwrap_or_default();
     let Some(serial_number) = SerialNumber::from_ascii(serial_text) else { fail(line!()) };
@@ -87,7 +88,6 @@ fn main() -> ! {
     let mut well = converters.begin(rate);
     let now_us = board::now_us();
     let mut times = Times { sampled_us: now_us, told_us: now_us, begun_us: now_us, measured_us: now_us };
-    chip.watchdog.start(WATCHDOG_MS.millis());
 
     loop {
         chip.watchdog.feed();

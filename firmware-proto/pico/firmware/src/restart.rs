@@ -12,6 +12,9 @@ const PANIC: u32 = 1;
 const HARD_FAULT: u32 = 2;
 const FAILED: u32 = 3;
 
+/// No reason yet: the program runs. The boot ROM restarts by the watchdog, too, after it has taken a new program, and has not this.
+const RUNNING: u32 = 4;
+
 /// Why the chip was restarted.
 #[derive(Clone, Copy)]
 pub(crate) enum Why {
@@ -45,12 +48,13 @@ fn watchdog() -> &'static pac::watchdog::RegisterBlock {
 pub(crate) fn why() -> Option<Why> {
     let watchdog = watchdog();
     let (kind, detail) = (watchdog.scratch0().read().bits(), watchdog.scratch1().read().bits());
-    watchdog.scratch0().write(|w| unsafe { w.bits(0) });
+    watchdog.scratch0().write(|w| unsafe { w.bits(MAGIC | RUNNING) });
     match kind.wrapping_sub(MAGIC) {
         PANIC => Some(Why::Panic(detail)),
         HARD_FAULT => Some(Why::HardFault(detail)),
         FAILED => Some(Why::Failed(detail)),
-        _ => watchdog.reason().read().timer().bit_is_set().then_some(Why::Watchdog),
+        RUNNING if watchdog.reason().read().timer().bit_is_set() => Some(Why::Watchdog),
+        _ => None,
     }
 }
 
@@ -74,6 +78,7 @@ pub(crate) fn fail(line: u32) -> ! {
 
 /// Into the boot ROM: the board becomes a drive that takes the next firmware.
 pub(crate) fn into_bootloader() -> ! {
+    watchdog().scratch0().write(|w| unsafe { w.bits(0) });
     rp2040_hal::rom_data::reset_to_usb_boot(0, 0)
 }
 

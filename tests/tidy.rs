@@ -267,6 +267,36 @@ fn every_page_has_one_title_and_links_that_lead_somewhere() {
 }
 
 #[test]
+fn each_fault_that_is_told_of_has_a_test_and_each_patch_a_place() {
+    let page = fs::read_to_string(root().join("docs/faults.md")).unwrap_or_default();
+    let rows: Vec<&str> =
+        page.lines().filter(|line| line.starts_with("| ") && line.ends_with("` |")).collect();
+    assert!(rows.len() > 20, "{rows:?}");
+    let all: String = ["crates", "tests"]
+        .iter()
+        .flat_map(|folder| files(&root().join(folder), "rs"))
+        .filter_map(|path| fs::read_to_string(path).ok())
+        .collect();
+    let name = |row: &&str| row.split('`').rev().nth(1).unwrap_or_default().to_owned();
+    let is_missing = |name: &String| !all.contains(&format!("fn {name}("));
+    let missing: Vec<String> = rows.iter().map(name).filter(is_missing).collect();
+    assert!(missing.is_empty(), "tests that docs/faults.md names are not there: {missing:#?}");
+    for patch in files(&root().join("tests/mutations"), "patch") {
+        let text = fs::read_to_string(&patch).unwrap_or_default();
+        let lines = text.lines();
+        let to = lines.clone().find_map(|line| line.strip_prefix("+++ b/")).unwrap_or_default();
+        let source = fs::read_to_string(root().join(to)).unwrap_or_default();
+        let old: String = lines
+            .skip(3)
+            .filter(|line| !line.starts_with('+'))
+            .filter_map(|line| line.get(1..))
+            .map(|line| format!("{line}\n"))
+            .collect();
+        assert!(source.contains(&old), "{} does not apply", patch.display());
+    }
+}
+
+#[test]
 fn places_that_pages_name_are_there() {
     let mut wrong = Vec::new();
     for path in files(&root(), "md") {

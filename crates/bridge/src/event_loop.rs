@@ -468,6 +468,8 @@ mod doubt;
 #[cfg(test)]
 mod histories;
 #[cfg(test)]
+mod stories;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod virtual_time;

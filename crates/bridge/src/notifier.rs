@@ -10,7 +10,8 @@ use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::pipeline::weighing::{Progress, WeighingReport};
 use tactpad_core::time::HostInstant;
 
-/// Debounces reports: a state is reported once it has lasted for a second. A state in which the player must act is reported at once.
+/// Debounces reports: a state is reported once it has lasted for a second. A state in which the player must act is reported at once, and
+/// where several take turns, so that nothing plays, one of them after two seconds.
 /// What comes and goes is not reported each time, see [`RateLimit`].
 #[derive(Clone, Debug)]
 pub(super) struct Notifier {
@@ -19,6 +20,8 @@ pub(super) struct Notifier {
     /// The current state, and since when it lasts.
     candidate: State,
     since: HostInstant,
+    /// Since when the bridge has not played and nothing was reported.
+    untold_since: Option<HostInstant>,
     /// The lasting warning that was reported, if it is still so.
     reported_warning: Option<Warning>,
     /// Whether it was reported that groups of events were dropped.
@@ -28,7 +31,7 @@ pub(super) struct Notifier {
     /// The number of the weighing whose end was reported last.
     reported_weighing: u64,
     /// What was reported to be wrong with the pad's stream, and when, if that is still so.
-    reported_line: Option<(Discriminant<LineFinding>, HostInstant)>,
+    reported_line: Option<(Subject, HostInstant)>,
     limit: RateLimit,
 }
 
@@ -37,8 +40,11 @@ pub(super) struct Notifier {
 enum Topic {
     State(State),
     Warning(Discriminant<Warning>),
-    Line(Discriminant<LineFinding>),
+    Line(Subject),
 }
+
+/// What a finding is about, whatever its numbers: its kind, and the channel if it is about one.
+type Subject = (Discriminant<LineFinding>, Option<usize>);
 
 impl Topic {
     /// How often it is reported in a minute: people bring about states, as by a plug, and look for the answer.
@@ -72,6 +78,9 @@ const REPEAT_US: u64 = 60_000_000;
 /// A state that lasts this long is reported, in microseconds.
 const LASTING_US: u64 = 1_000_000;
 
+/// So long nothing plays without a word, in microseconds.
+const UNTOLD_US: u64 = 2_000_000;
+
 impl Notifier {
     /// A notifier that reports nothing as long as the bridge plays.
     pub(super) fn new(now: HostInstant) -> Self {
@@ -79,6 +88,7 @@ impl Notifier {
             reported: State::Playing,
             candidate: State::Playing,
             since: now,
+            untold_since: None,
             reported_warning: None,
             reported_groups: false,
             reported_calls: false,
@@ -93,11 +103,13 @@ impl Notifier {
         if state != self.candidate {
             (self.candidate, self.since) = (state, now);
         }
+        self.untold_since = if state == State::Playing { None } else { self.untold_since.or(Some(now)) };
+        let is_untold = self.untold_since.is_some_and(|since| now.us_since(since) >= UNTOLD_US);
         // A lift may be all that there is of it, and a press that is not heard must not go without a word.
-        let lasts = state == State::Loaded || now.us_since(self.since) >= LASTING_US;
+        let lasts = state == State::Loaded || now.us_since(self.since) >= LASTING_US || is_untold;
         let is_reported = lasts && state != self.reported && self.limit.allows(now, Topic::State(state));
         is_reported.then(|| {
-            self.reported = state;
+            (self.reported, self.untold_since) = (state, None);
             state
         })
     }
@@ -131,12 +143,12 @@ impl Notifier {
             let seconds = now.us_since(since) / 1_000_000;
             return Some(format!("the pad's stream is in order again, after {seconds} s"));
         };
-        let kind = discriminant(finding);
-        let is_new = self.reported_line.is_none_or(|(reported, _)| reported != kind);
-        if !is_new || !self.limit.allows(now, Topic::Line(kind)) {
+        let subject = (discriminant(finding), finding.channel());
+        let is_new = self.reported_line.is_none_or(|(reported, _)| reported != subject);
+        if !is_new || !self.limit.allows(now, Topic::Line(subject)) {
             return None;
         }
-        self.reported_line = Some((kind, now));
+        self.reported_line = Some((subject, now));
         Some(finding.to_string())
     }
 

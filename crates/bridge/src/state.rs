@@ -57,10 +57,14 @@ impl State {
         }
     }
 
-    /// Whether this may be why. Frames that are lost do not keep a zero from being measured.
+    /// Whether this may be why. Frames that are lost do not keep a zero from being measured; and of a pad that says nothing at all neither
+    /// lost frames nor a channel that stood is the reason.
     pub(super) const fn may_come_of(self, finding: &LineFinding) -> bool {
         match finding {
-            LineFinding::Loss { .. } => matches!(self, Self::Silent | Self::Doubtful),
+            LineFinding::Loss { .. } => matches!(self, Self::Doubtful),
+            LineFinding::ChannelStands { .. } => {
+                matches!(self, Self::Taring | Self::Loaded | Self::Doubtful | Self::Faulty)
+            }
             _ => matches!(self, Self::Taring | Self::Loaded | Self::Silent | Self::Doubtful | Self::Faulty),
         }
     }

@@ -14,7 +14,7 @@ const FIRM: Contact = Contact { x_mm: 15.0, y_mm: 6.0, fx_n: 0.3, fy_n: 0.0, fz_
 const LIGHT: Contact = Contact { fx_n: 0.0, fz_n: 0.6, ..FIRM };
 
 /// A channel that stands at so many millivolts, with noise of so many microvolts either way, whatever presses.
-pub(super) fn rail(channel: usize, mv: i32, noise_uv: i32) -> impl Fn(u32, &mut [i32; 9]) + Clone {
+fn rail(channel: usize, mv: i32, noise_uv: i32) -> impl Fn(u32, &mut [i32; 9]) + Clone {
     move |number, counts| {
         let noise = (number.wrapping_mul(2_654_435_761) >> 16) as i32 % (200 * noise_uv + 1) - 100 * noise_uv;
         counts[channel] = 100_000 * mv + noise;

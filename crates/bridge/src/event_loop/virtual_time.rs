@@ -13,6 +13,7 @@ use super::*;
 use crate::bridge_parts::PlayingDecoder;
 use crate::changes::ChangesSlot;
 use crate::clock::Clock;
+use crate::observer::Observer;
 use crate::opening::{OpenedPad, Patience};
 use crate::sink::{Sink, SinkError};
 use crate::transport::Transport;
@@ -25,12 +26,18 @@ use tactpad_core::pipeline::mapping::read::shipped as profiles;
 use tactpad_core::pipeline::shipped;
 use tactpad_core::quantity::Contact;
 
-/// Keeps the messages that it was given.
+/// Keeps the messages that it was given, and who reads profiles is asked with it.
 #[derive(Clone, Default)]
-pub(super) struct MessageLog(pub(super) Arc<Mutex<Vec<String>>>);
+pub(super) struct MessageLog(pub(super) Arc<Mutex<Vec<String>>>, pub(super) Reading);
+
+/// Profiles that are being read, if that takes time.
+pub(super) type Reading = Arc<Mutex<Option<Vec<(ProfileRequest, ProfileReply)>>>>;
 
 impl Host for MessageLog {
     fn read_profile(&mut self, request: ProfileRequest, reply: ProfileReply) {
+        if let Some(reading) = &mut *self.1.lock().unwrap() {
+            return reading.push((request, reply));
+        }
         reply.hand_in(match request {
             ProfileRequest::Named(name) => profile(&name),
             ProfileRequest::Same => Err("there is none".into()),
@@ -43,7 +50,7 @@ impl Host for MessageLog {
     }
 }
 
-fn profile(name: &str) -> Result<ReadProfile, String> {
+pub(super) fn profile(name: &str) -> Result<ReadProfile, String> {
     let text = profiles::text(name).ok_or("there is none")?;
     ReadProfile::read(text, OutputChoice::AsWritten).0.ok_or("it has errors".into())
 }
@@ -54,6 +61,7 @@ pub(super) fn bridge(
     pad: OpenedPad,
     sink: Box<dyn Sink>,
     messages: &MessageLog,
+    observers: Vec<Observer>,
 ) -> Bridge {
     let bridge = Bridge::new(BridgeParts {
         clock: Clock::virtual_time(now_ns),
@@ -70,7 +78,7 @@ pub(super) fn bridge(
         requests: Requests::new().unwrap(),
         host: Box::new(messages.clone()),
         record: None,
-        observers: Vec::new(),
+        observers,
         changes: ChangesSlot::default(),
         duration_us: None,
     });
@@ -89,8 +97,35 @@ const SENT_MAX: usize = 2_000;
 /// So many bytes wait in a terminal.
 const TERMINAL_BYTES: usize = 4096;
 
-/// What a pad has sent and nobody has read; nothing when it is pulled out.
+/// What a pad has sent and nobody has read; nothing once it was pulled out.
 type Line = Arc<Mutex<Option<Vec<u8>>>>;
+
+/// Where a pad is plugged in: its line, and why it may not be opened.
+#[derive(Clone, Default)]
+pub(super) struct Plug {
+    line: Arc<Mutex<Option<Line>>>,
+    /// The line that the bridge opened last.
+    opened: Arc<Mutex<Line>>,
+    pub(super) refusal: Arc<Mutex<Option<PadError>>>,
+}
+
+impl Plug {
+    fn open(&self) -> Result<Box<dyn Transport>, PadError> {
+        let line = self.line.lock().unwrap().clone().ok_or(PadError::NotThere("no".into()))?;
+        if let Some(refusal) = self.refusal.lock().unwrap().clone() {
+            return Err(refusal);
+        }
+        *self.opened.lock().unwrap() = Arc::clone(&line);
+        Ok(Box::new(Port { line, nothing: std::fs::File::open("/dev/null").unwrap() }))
+    }
+
+    /// Does something with what nobody has read; `None` without a pad.
+    pub(super) fn unread<T>(&self, look: impl FnOnce(&mut Vec<u8>) -> T) -> Option<T> {
+        let line = self.line.lock().unwrap().clone()?;
+        let mut unread = line.lock().unwrap();
+        unread.as_mut().map(look)
+    }
+}
 
 /// The bridge's end of a pad's line.
 struct Port {
@@ -117,9 +152,17 @@ impl Transport for Port {
     }
 }
 
-/// Writes down the groups that go out.
+/// Writes down the groups that go out. Those that nobody takes it counts.
 #[derive(Clone, Default)]
-struct Written(Arc<Mutex<Vec<OutputEvent>>>);
+pub(super) struct Written(pub(super) Arc<Mutex<Outside>>);
+
+/// Who takes events.
+#[derive(Default)]
+pub(super) struct Outside {
+    events: Vec<OutputEvent>,
+    pub(super) is_stalled: bool,
+    dropped: u64,
+}
 
 impl Sink for Written {
     fn prepare(&mut self, _device: OutputDevice) -> Result<(), SinkError> {
@@ -127,8 +170,14 @@ impl Sink for Written {
     }
 
     fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {
-        self.0.lock().unwrap().extend_from_slice(group);
+        let mut outside = self.0.lock().unwrap();
+        outside.events.extend_from_slice(group);
+        outside.dropped += u64::from(outside.is_stalled);
         Ok(())
+    }
+
+    fn dropped(&self) -> u64 {
+        self.0.lock().unwrap().dropped
     }
 
     fn describe(&self) -> String {
@@ -142,8 +191,8 @@ pub(super) type Wiring = Box<dyn Fn(u32, &mut [i32; 9])>;
 /// A bridge and its pad, which sends 1,000 samples a second.
 pub(super) struct Play {
     pub(super) bridge: Bridge,
-    line: Line,
-    written: Written,
+    pub(super) plug: Plug,
+    pub(super) written: Written,
     pub(super) messages: MessageLog,
     pub(super) now: HostInstant,
     /// The bridge's clock.
@@ -162,6 +211,8 @@ pub(super) struct Play {
     /// What becomes of the channels of a sample with this number, in counts.
     pub(super) wiring: Wiring,
     field: InfluenceField,
+    /// The contact that was read last, and the channels of it, µV.
+    read: (Contact, [f32; 9]),
 }
 
 /// What goes out, with its value, and how long after the last change of the finger, in microseconds.
@@ -170,21 +221,23 @@ pub(super) type Edge = (String, i32, u64);
 impl Play {
     /// A bridge that waits for a pad: none is plugged in.
     pub(super) fn waiting() -> Self {
-        let (line, written) = (Line::default(), Written::default());
-        let plug = Arc::clone(&line);
-        let pad = OpenedPad::absent(Box::new(move || {
-            if plug.lock().unwrap().is_none() {
-                return Err(PadError::NotThere("no".into()));
-            }
-            let nothing = std::fs::File::open("/dev/null").unwrap();
-            Ok(Box::new(Port { line: Arc::clone(&plug), nothing }))
-        }));
+        Self::watched(Vec::new())
+    }
+
+    /// The same, with these who are told each call.
+    pub(super) fn watched(observers: Vec<Observer>) -> Self {
+        let (plug, written) = (Plug::default(), Written::default());
+        let opened = plug.clone();
+        let pad = OpenedPad::absent(Box::new(move || opened.open()));
         let messages = MessageLog::default();
         let now_ns: &AtomicU64 = Box::leak(Box::default());
-        let bridge = bridge(now_ns, pad, Box::new(written.clone()), &messages);
+        let bridge = bridge(now_ns, pad, Box::new(written.clone()), &messages, observers);
+        let field = PadField::nominal().signals;
+        let away = Contact::default();
+        let read = (away, field.strain_uv(&away).uv);
         Self {
             bridge,
-            line,
+            plug,
             written,
             messages,
             now: HostInstant::default(),
@@ -196,7 +249,8 @@ impl Play {
             status: Status::OK,
             offset: [0; 9],
             wiring: Box::new(|_, _| ()),
-            field: PadField::nominal().signals,
+            field,
+            read,
         }
     }
 
@@ -210,27 +264,39 @@ impl Play {
     }
 
     pub(super) fn plug_in(&mut self) {
-        self.line.lock().unwrap().get_or_insert_default();
+        self.plug.line.lock().unwrap().get_or_insert_with(|| Arc::new(Mutex::new(Some(Vec::new()))));
     }
 
     /// Pulls the pad out; what goes out.
     pub(super) fn pull_out(&mut self) -> Vec<Edge> {
-        *self.line.lock().unwrap() = None;
+        self.unplug();
         self.read(self.now)
+    }
+
+    /// The same, while the bridge does not come to run.
+    pub(super) fn unplug(&mut self) {
+        if let Some(line) = self.plug.line.lock().unwrap().take() {
+            *line.lock().unwrap() = None;
+        }
     }
 
     /// Lets time pass in which the pad says nothing; what goes out.
     pub(super) fn wait(&mut self, ms: u64) -> Vec<Edge> {
-        let (begin, end) = (self.now, self.now.plus_us(1_000 * ms));
+        let begin = self.now;
         let mut edges = Vec::new();
+        self.wait_until(begin.plus_us(1_000 * ms), |play| edges.extend(play.take(begin)));
+        self.time_us = self.time_us.wrapping_add(self.us_per_ms * ms);
+        edges
+    }
+
+    /// Lets time pass until `end`, without a word of the pad, and has each turn of the loop looked at.
+    pub(super) fn wait_until(&mut self, end: HostInstant, mut look: impl FnMut(&mut Self)) {
         while let Some(due) = self.bridge.next_deadline().filter(|due| *due < end) {
             self.now = due.max(self.now);
             self.turn(ASLEEP);
-            edges.extend(self.take(begin));
+            look(self);
         }
         self.now = end;
-        self.time_us = self.time_us.wrapping_add(self.us_per_ms * ms);
-        edges
     }
 
     /// Presses the middle with this force (N) for so long; what goes out.
@@ -246,24 +312,35 @@ impl Play {
             let message = Message::Sample(self.sample(contact));
             let mut frame = [0; ENCODED_MAX];
             let length = encode_message(&message, &mut frame);
-            let mut line = self.line.lock().unwrap();
-            if let Some(line) = line.as_mut().filter(|line| line.len() + length <= TERMINAL_BYTES) {
-                line.extend_from_slice(&frame[..length]);
-            }
+            self.buffer(&frame[..length]);
             self.now = self.now.plus_us(1_000);
             self.time_us = self.time_us.wrapping_add(self.us_per_ms);
         }
-        let is_waiting = |line: &Line| line.lock().unwrap().as_ref().is_some_and(|line| !line.is_empty());
         let mut edges = Vec::new();
         if let Some(request) = request {
             self.bridge.requests.sender().unwrap().send(request).unwrap();
             self.turn(Woken { pad: self.bridge.connection.pad().is_some(), request: true });
             edges.extend(self.take(begin));
         }
-        while self.bridge.connection.pad().is_some() && is_waiting(&self.line) {
+        while self.is_readable() {
             edges.extend(self.read(begin));
         }
         edges
+    }
+
+    /// Puts bytes on the line, as many as a terminal holds whole.
+    pub(super) fn buffer(&mut self, bytes: &[u8]) {
+        self.plug.unread(|unread| {
+            if unread.len() + bytes.len() <= TERMINAL_BYTES {
+                unread.extend_from_slice(bytes);
+            }
+        });
+    }
+
+    /// Whether the bridge has a pad open that has sent something.
+    pub(super) fn is_readable(&self) -> bool {
+        self.bridge.connection.pad().is_some()
+            && self.plug.unread(|unread| !unread.is_empty()).unwrap_or(false)
     }
 
     /// Keeps this contact for so long; what goes out.
@@ -284,7 +361,10 @@ impl Play {
     pub(super) fn sample(&mut self, contact: &Contact) -> Sample {
         // A channel that stands still for long is a fault: the last digit moves.
         let jitter = (self.sequence % 2) as i32;
-        let uv = self.field.strain_uv(contact).uv;
+        if self.read.0 != *contact {
+            self.read = (*contact, self.field.strain_uv(contact).uv);
+        }
+        let uv = self.read.1;
         let mut counts = std::array::from_fn(|k| (100.0 * uv[k]) as i32 + self.offset[k] + jitter);
         (self.wiring)(self.sequence, &mut counts);
         let sample = Sample {
@@ -314,14 +394,26 @@ impl Play {
         if self.bridge.connection.pad().is_none() {
             return Vec::new();
         }
-        if let Some(line) = self.line.lock().unwrap().as_mut() {
-            line.extend_from_slice(bytes);
-        }
+        self.plug.unread(|unread| unread.extend_from_slice(bytes));
         self.read(begin)
     }
 
+    /// The pad sends bytes to a bridge that has it open; to another one they are lost.
+    pub(super) fn send_to(&mut self, bytes: &[u8]) {
+        if self.bridge.connection.pad().is_some() {
+            self.plug.unread(|unread| unread.extend_from_slice(bytes));
+        }
+    }
+
+    /// Whether the bridge has a pad open that has sent something, or one that is gone.
+    pub(super) fn is_hung_up_or_readable(&self) -> bool {
+        let opened = Arc::clone(&self.plug.opened.lock().unwrap());
+        let line = opened.lock().unwrap();
+        self.bridge.connection.pad().is_some() && line.as_ref().is_none_or(|unread| !unread.is_empty())
+    }
+
     /// The bridge wakes now.
-    fn turn(&mut self, woken: Woken) {
+    pub(super) fn turn(&mut self, woken: Woken) {
         self.now_ns.store(self.now.as_ns(), Ordering::Relaxed);
         assert_eq!(self.bridge.turn(self.now, woken).unwrap(), None);
     }
@@ -333,16 +425,13 @@ impl Play {
         self.take(begin)
     }
 
-    /// Somebody asks the bridge for something now.
-    pub(super) fn ask(&mut self, request: Request) -> Vec<Edge> {
-        self.bridge.requests.sender().unwrap().send(request).unwrap();
-        self.turn(ASKED);
-        self.take(self.now)
-    }
-
     fn take(&self, begin: HostInstant) -> Vec<Edge> {
         let after_us = self.now.us_since(begin);
-        let written = std::mem::take(&mut *self.written.0.lock().unwrap());
-        written.iter().map(|event| (event.code.to_string(), event.value, after_us)).collect()
+        self.taken().iter().map(|event| (event.code.to_string(), event.value, after_us)).collect()
+    }
+
+    /// The events that went out since they were taken last.
+    pub(super) fn taken(&self) -> Vec<OutputEvent> {
+        std::mem::take(&mut self.written.0.lock().unwrap().events)
     }
 }

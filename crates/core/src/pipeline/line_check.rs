@@ -164,6 +164,16 @@ impl fmt::Display for LineFinding {
 }
 
 impl LineFinding {
+    /// The channel that it is about, if it is about one.
+    pub const fn channel(&self) -> Option<usize> {
+        match self {
+            Self::ChannelStands { channel, .. }
+            | Self::CellStands { channel }
+            | Self::NoNumber { channel } => Some(*channel),
+            _ => None,
+        }
+    }
+
     /// Whether one look is enough: most samples show it.
     const fn is_certain(&self) -> bool {
         matches!(
@@ -171,6 +181,27 @@ impl LineFinding {
             Self::RestartFlagStays | Self::SequenceStands { .. } | Self::Clock { .. } | Self::Rate { .. }
         )
     }
+}
+
+/// How a sample came.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Arrival {
+    /// So many frames are missing before it.
+    pub lost: u32,
+    /// Whether the pad's clock does not go on from the sample before.
+    pub breaks: bool,
+    /// By how much it came late, µs; `None` of one that came again, or is of another time.
+    pub delay_us: Option<u64>,
+}
+
+/// What the pad's clock showed.
+#[derive(Clone, Copy, Debug)]
+struct ShownTime {
+    from_us: u64,
+    last_us: u64,
+    /// By how much the first of it came late: that may be made up for.
+    delay_us: u64,
+    samples: u32,
 }
 
 /// Looks at the samples of one stretch of time after the other.
@@ -198,6 +229,9 @@ struct Look {
     sequence_largest: u32,
     /// Samples at which the pad's clock did not go on.
     clock_breaks: u32,
+    /// The last of the samples that go on from one another, and what they show.
+    taken: Option<Reading>,
+    clock: Option<ShownTime>,
     lost: u32,
     has_changed: [bool; CHANNELS],
 }
@@ -219,9 +253,8 @@ impl LineCheck {
         self.finding.as_ref()
     }
 
-    /// Takes a sample, as it came, before which `lost` frames are missing, and where `breaks` says that the pad's clock does not go
-    /// on. Of a frame that was damaged the number is missing.
-    pub fn sample(&mut self, now: HostInstant, reading: &Reading, lost: u32, breaks: bool) {
+    /// Takes a sample, as it came. Of a frame that was damaged the number is missing.
+    pub fn sample(&mut self, now: HostInstant, reading: &Reading, arrival: Arrival) {
         if self.look.as_ref().is_some_and(|look| now.us_since(look.begun) >= LOOK_US) {
             self.close();
         }
@@ -231,8 +264,15 @@ impl LineCheck {
             self.finding = Some(LineFinding::SequenceWraps { largest });
         }
         look.sample(now, reading);
-        look.lost = look.lost.saturating_add(lost);
-        look.clock_breaks += u32::from(breaks);
+        look.lost = look.lost.saturating_add(arrival.lost);
+        look.clock_breaks += u32::from(arrival.breaks);
+        if let Some(delay_us) = arrival.delay_us {
+            look.take(reading);
+            let last_us = reading.time_us;
+            let begun = ShownTime { from_us: last_us, last_us, delay_us, samples: 0 };
+            let clock = look.clock.unwrap_or(begun);
+            look.clock = Some(ShownTime { last_us, samples: clock.samples + 1, ..clock });
+        }
     }
 
     /// Another pad may come.
@@ -276,6 +316,8 @@ impl Look {
             sequence_falls: 0,
             sequence_largest: 0,
             clock_breaks: 0,
+            taken: None,
+            clock: None,
             lost: 0,
             has_changed: [false; CHANNELS],
         }
@@ -286,7 +328,6 @@ impl Look {
         self.samples += 1;
         self.restart_flags += u32::from(reading.status.restarted());
         self.sequence_stands += u32::from(!is_first && reading.sequence == self.last.sequence);
-        self.sequence_falls += u32::from(self.falls(reading));
         self.sequence_largest = self.sequence_largest.max(reading.sequence);
         self.widest_us = self.widest_us.max(now.us_since(self.heard));
         // Of other pads than those with nine channels nobody knows which have noise.
@@ -298,18 +339,17 @@ impl Look {
         (self.heard, self.last) = (now, *reading);
     }
 
-    /// Whether the number falls though time goes on: neither an old frame nor a pad that began anew.
-    const fn falls(&self, reading: &Reading) -> bool {
-        !reading.status.restarted()
-            && reading.sequence < self.last.sequence
-            && reading.time_us > self.last.time_us
+    /// Takes a sample that goes on from the last one, or begins anew.
+    fn take(&mut self, reading: &Reading) {
+        let last = self.taken.replace(*reading);
+        self.sequence_falls += u32::from(last.is_some_and(|last| falls(&last, reading)));
     }
 
     /// The largest number, where the next one is zero and it is all that eight bits or more can count.
     fn wrapped(&self, reading: &Reading) -> Option<u32> {
         let largest = self.last.sequence;
         let is_full = largest >= u8::MAX.into() && largest & largest.wrapping_add(1) == 0;
-        (is_full && reading.sequence == 0 && self.falls(reading)).then_some(largest)
+        (is_full && reading.sequence == 0 && falls(&self.last, reading)).then_some(largest)
     }
 
     /// The gravest that it shows.
@@ -319,12 +359,18 @@ impl Look {
         }
         let most = |count: u32| 2 * count > self.samples;
         let passed_us = self.heard.us_since(self.begun);
-        let shown_us = self.last.time_us.wrapping_sub(self.first.time_us);
+        // An old frame says nothing of the clock, but where most seem to be old it is the clock.
+        let all =
+            ShownTime { from_us: self.first.time_us, last_us: self.last.time_us, delay_us: 0, samples: 0 };
+        let shown = self.clock.filter(|clock| most(clock.samples)).unwrap_or(all);
+        let shown_us = shown.last_us.wrapping_sub(shown.from_us);
+        let burst_us = BURST_US.saturating_add(shown.delay_us);
         // A clock that jumped once was set anew.
         let is_clock_off = (self.clock_breaks == 0 || most(self.clock_breaks))
             && (shown_us.saturating_mul(CLOCK_OFF) < passed_us
-                || shown_us > CLOCK_OFF * passed_us + BURST_US);
-        let mean_us = passed_us as f32 / (self.samples - 1) as f32;
+                || shown_us > (CLOCK_OFF * passed_us).saturating_add(burst_us));
+        // What is lost was sent.
+        let mean_us = passed_us as f32 / (self.lost + self.samples - 1) as f32;
         let is_slow = 1e6 / mean_us < SAMPLES_PER_S_MIN && (self.widest_us as f32) < EVEN * mean_us;
         let percent = 100.0 * self.lost as f32 / (self.lost + self.samples) as f32;
         let still = self.has_changed.iter().position(|has_changed| !has_changed);
@@ -353,6 +399,11 @@ impl Look {
             })
         }
     }
+}
+
+/// Whether the number falls though time goes on: neither an old frame nor a pad that began anew.
+const fn falls(last: &Reading, next: &Reading) -> bool {
+    !next.status.restarted() && next.sequence < last.sequence && next.time_us > last.time_us
 }
 
 #[cfg(test)]
@@ -384,7 +435,8 @@ mod tests {
             let sample = make(Sample { sequence: number as u32, ..sound(at_ms) }, number as u32);
             let now = HostInstant::default().plus_us(1_000 * u64::from(at_ms));
             let is_break = breaks(&sample, number as u32);
-            check.sample(now, &sample.into(), 0, is_break);
+            let arrival = Arrival { lost: 0, breaks: is_break, delay_us: Some(0) };
+            check.sample(now, &sample.into(), arrival);
         }
         check.finding().copied()
     }
@@ -463,8 +515,7 @@ mod tests {
             check.sample(
                 HostInstant::default().plus_us(1_000 * u64::from(ms)),
                 &sound(ms).into(),
-                lost,
-                false,
+                Arrival { lost, breaks: false, delay_us: Some(0) },
             );
         };
         (0..3_000).for_each(|ms| at(&mut check, ms, u32::from(ms % 40 == 0)));

@@ -5,8 +5,10 @@ use crate::time::{HostInstant, StreamInstant};
 /// The longest step of the pad's clock between two samples that is not a jump: 10 periods of the slowest pad.
 pub(super) const GAP_MAX_US: u64 = 100_000;
 
-/// The pace of the pad's clock is judged over this time.
-const PACE_US: u64 = 1_000_000;
+/// The pace of the pad's clock is judged over four parts of this length, µs: over a second, and anew with each part, so that a clock that
+/// is sound again is believed soon.
+const PACE_PART_US: u64 = 250_000;
+const PACE_PARTS: usize = 4;
 
 /// Bytes that waited for a host that was busy arrive at once: so much more may be shown than has passed.
 const PACE_BURST_US: u64 = 1_000_000;
@@ -25,10 +27,11 @@ pub(super) struct StreamClock {
     pub(super) heard: HostInstant,
     /// False until the first sample, which sets the clock.
     pub(super) set: bool,
-    /// Where the present look at the pace began: host time and the pad's.
-    pace_from: (HostInstant, u64),
-    /// So much more than has passed may be shown by the end of it.
+    /// Where the newest parts of the look at the pace began, oldest first: host time and the pad's.
+    pace_from: [(HostInstant, u64); PACE_PARTS],
+    /// So much more than has passed may be shown by a look that begins at one of so many parts from now on.
     burst_us: u64,
+    burst_parts: usize,
     /// Whether the last look found that the pad's clock counts microseconds.
     is_on_pace: bool,
 }
@@ -40,8 +43,9 @@ impl StreamClock {
             last: StreamInstant::from_us(0),
             heard: HostInstant::from_ns(0),
             set: false,
-            pace_from: (HostInstant::from_ns(0), 0),
+            pace_from: [(HostInstant::from_ns(0), 0); PACE_PARTS],
             burst_us: PACE_BURST_US,
+            burst_parts: 0,
             is_on_pace: true,
         }
     }
@@ -61,14 +65,28 @@ impl StreamClock {
     /// Whether the pad's clock goes half to twice as fast as the host's, by the last look that is over. Times in a profile mean
     /// nothing on a clock that counts milliseconds for microseconds, say.
     fn keeps_pace(&mut self, now: HostInstant, device_us: u64) -> bool {
-        let (host, from_us) = self.pace_from;
-        let passed_us = now.us_since(host);
-        if passed_us >= PACE_US {
-            let shown_us = device_us.wrapping_sub(from_us);
-            self.is_on_pace = (passed_us / 2..=2 * passed_us + self.burst_us).contains(&shown_us);
-            (self.pace_from, self.burst_us) = ((now, device_us), PACE_BURST_US);
+        let [(host, from_us), .., (newest, _)] = self.pace_from;
+        if now.us_since(newest) >= PACE_PART_US {
+            let passed_us = now.us_since(host);
+            if passed_us >= PACE_PARTS as u64 * PACE_PART_US {
+                let shown_us = device_us.wrapping_sub(from_us);
+                self.is_on_pace = (passed_us / 2..=2 * passed_us + self.burst_us).contains(&shown_us);
+            }
+            self.pace_from.rotate_left(1);
+            self.pace_from[PACE_PARTS - 1] = (now, device_us);
+            self.burst_parts = self.burst_parts.saturating_sub(1);
+            if self.burst_parts == 0 {
+                self.burst_us = PACE_BURST_US;
+            }
         }
         self.is_on_pace
+    }
+
+    /// Looks at the pace from here on. What is late by so much may be made up for within a look.
+    fn look_anew(&mut self, now: HostInstant, device_us: u64, delay_us: u64) {
+        self.pace_from = [(now, device_us); PACE_PARTS];
+        self.burst_us = PACE_BURST_US.saturating_add(delay_us);
+        self.burst_parts = 2 * PACE_PARTS;
     }
 
     /// Takes the device time of a sample that comes so much later than it should. Returns false if the clock jumped and was joined anew; `continues` says whether
@@ -84,8 +102,7 @@ impl StreamClock {
         let smooth = stream_us > self.last.as_us() && stream_us - self.last.as_us() <= GAP_MAX_US;
         // What a host takes late says nothing of the pace.
         if !continues || !smooth || now.us_since(self.heard) > GAP_MAX_US {
-            // What is late may be made up for within the next look.
-            (self.pace_from, self.burst_us) = ((now, device_us), PACE_BURST_US.saturating_add(delay_us));
+            self.look_anew(now, device_us, delay_us);
             self.is_on_pace |= !continues;
         }
         if continues && smooth && self.keeps_pace(now, device_us) {

@@ -12,7 +12,7 @@ use firmware_proto::identity::Identity;
 use firmware_proto::link::MessageReceiver;
 
 use crate::pipeline::health::Health;
-use crate::pipeline::line_check::{LineCheck, LineFinding};
+use crate::pipeline::line_check::{Arrival, LineCheck, LineFinding};
 use crate::time::{HostInstant, StreamInstant};
 use clock::StreamClock;
 use order::{OtherRun, Run, SequenceStep};
@@ -175,12 +175,17 @@ impl Link {
     }
 
     fn order(&mut self, now: HostInstant, reading: Reading, health: &mut Health) -> LinkEvent {
-        let lost_before = health.frames_lost;
+        let before = *health;
+        let delay_us = self.run.as_ref().map_or(0, |run| run.delay_us(now, &reading));
         let event = self.ordered(now, reading, health);
-        let lost = u32::try_from(health.frames_lost - lost_before).unwrap_or(u32::MAX);
-        let breaks =
-            matches!(event, LinkEvent::Sample { fault: Some(Fault::TimeJump | Fault::Restarted), .. });
-        self.check.sample(now, &reading, lost, breaks);
+        let is_next = matches!(event, LinkEvent::Sample { .. });
+        let arrival = Arrival {
+            lost: u32::try_from(health.frames_lost - before.frames_lost).unwrap_or(u32::MAX),
+            // Whatever fault is told of it.
+            breaks: (health.time_jumps, health.restarts) != (before.time_jumps, before.restarts),
+            delay_us: is_next.then_some(delay_us),
+        };
+        self.check.sample(now, &reading, arrival);
         event
     }
 

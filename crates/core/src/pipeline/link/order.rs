@@ -7,7 +7,7 @@ use crate::time::HostInstant;
 /// No pad samples faster than once in so many microseconds.
 const PERIOD_MIN_US: u64 = 50;
 
-/// The number of the next frame may be ahead by so much, whatever time has passed.
+/// The number of the next frame may be ahead by so much, however little time has passed.
 const SKIPPED_MAX: u32 = 64;
 
 /// So many of the newest frames are kept, to tell one that comes again from one of a run that began anew.
@@ -85,7 +85,10 @@ impl Run {
         match next.sequence.wrapping_sub(self.last.sequence) {
             0 => SequenceStep::Apart,
             1 => SequenceStep::Next,
-            ahead if ahead <= SKIPPED_MAX || self.goes_on_after_gap(now, next) => {
+            ahead
+                if ahead <= SKIPPED_MAX && self.can_show_by(now, next)
+                    || self.goes_on_after_gap(now, next) =>
+            {
                 SequenceStep::Skipped(ahead - 1)
             }
             _ => SequenceStep::Apart,
@@ -119,6 +122,14 @@ impl Run {
                 is_behind && !frame.status.restarted()
             }
         }
+    }
+
+    /// Whether the time that `next` shows goes on from the last sample's and has come by `now`. Where frames are missing, a number that is
+    /// near by chance is no sign that it is the same run.
+    fn can_show_by(&self, now: HostInstant, next: &Reading) -> bool {
+        let (heard, time_us) = self.prompt;
+        let shown_us = next.time_us.wrapping_sub(time_us);
+        next.time_us > self.last.time_us && shown_us <= 2 * now.us_since(heard) + GAP_MAX_US
     }
 
     /// Whether `next`, heard at `now`, can be of this run after a gap. A run that began anew shows another time than has passed, or a

@@ -83,6 +83,18 @@ pub struct Signal {
     faults: ChannelFaults,
     filter: MeanFilter,
     tare: Tare,
+    /// How sound the channels were when the zero was measured.
+    zero: MeasuredZero,
+}
+
+/// How sound the channels were when the zero was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum MeasuredZero {
+    /// The next sample will tell: only from what they do at rest is it known which of them are noisy.
+    Untried,
+    Whole,
+    /// A channel did not answer then. Once it does, its zero is not known, nor whether the others' was a load.
+    Partial,
 }
 
 impl Signal {
@@ -97,6 +109,7 @@ impl Signal {
             faults: ChannelFaults::new(channels, is_clamped),
             filter: MeanFilter::new(filter_samples),
             tare: Tare::new(channels < CHANNELS),
+            zero: MeasuredZero::Whole,
         }
     }
 
@@ -151,8 +164,15 @@ impl Signal {
         loads: &Loads<impl Fn(&Strain) -> f32, impl Fn(&Strain) -> f32>,
         health: &mut Health,
     ) -> Conditioned {
-        if self.faults.check(sample, self.scale.count_bits, health) {
+        let is_faulty = self.faults.check(sample, self.scale.count_bits, health);
+        let zero = std::mem::replace(&mut self.zero, MeasuredZero::Whole);
+        if is_faulty {
+            self.zero = if zero == MeasuredZero::Whole { zero } else { MeasuredZero::Partial };
             return Conditioned::Faulty;
+        }
+        if zero == MeasuredZero::Partial {
+            self.tare = Tare::new(self.channels < CHANNELS);
+            self.faults.forget_rest();
         }
         let uv_per_count = self.scale.uv_per_count;
         let raw_uv =
@@ -190,6 +210,7 @@ impl Signal {
         }
         if self.tare.is_known() {
             self.faults.learn();
+            self.zero = MeasuredZero::Untried;
         }
     }
 }

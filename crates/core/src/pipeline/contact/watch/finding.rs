@@ -110,20 +110,22 @@ pub(super) fn judge(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -
 }
 
 /// The normal force of a difference of two readings, N, of which one channel may have moved by itself. If it is one finger's but
-/// for that channel, then that finger's; else that of all channels. Decoders that explain nothing know only a channel that moved alone.
+/// for that channel, then that finger's; else that of all channels, unless a channel moved alone. Decoders that explain nothing know only
+/// that.
 pub fn load_without_stray_n(decoder: &Decoder, strain: &Strain) -> f32 {
-    let Some(inverse) = decoder.inverse() else {
-        // A load above one cell reads there alone.
+    let plain_n = || {
+        // A load above one of four cells reads there alone.
         let is_lone = decoder.channels() == CHANNELS && lone_channel(&strain.uv.map(f64::from)).is_some();
-        return if is_lone { 0.0 } else { decoder.load_n(strain) };
+        if is_lone { 0.0 } else { decoder.load_n(strain) }
     };
+    let Some(inverse) = decoder.inverse() else { return plain_n() };
     let fit_without_stray = || {
         let mean = Mean::of(strain, &inverse.explain(strain)?);
         let weights = weights(inverse, &mean, &[0.0; CHANNELS]);
         let is_one_finger = chi_square(&mean.left_uv, &weights) <= MISFIT_MAX;
         odd_one_out(inverse, &mean, &weights, REST_SHARE_AT_REST).filter(|_| !is_one_finger)
     };
-    fit_without_stray().map_or_else(|| decoder.load_n(strain), |(_, fit)| fit.force_n[2] as f32)
+    fit_without_stray().map_or_else(plain_n, |(_, fit)| fit.force_n[2] as f32)
 }
 
 /// Whether so much of the load is left over that it is no finger on a pad that is only not quite as it was calibrated.

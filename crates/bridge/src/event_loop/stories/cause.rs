@@ -1,0 +1,136 @@
+//! What may keep a pad from playing, by the simulator's knowledge, and which words are right about it.
+
+use crate::state::State;
+use tactpad_core::pipeline::line_check::LineFinding;
+use tactpad_core::time::HostInstant;
+
+/// Something that keeps a pad from playing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cause {
+    /// It is pulled out.
+    Gone,
+    /// Its port may not be opened.
+    Denied,
+    /// What is plugged in cannot be used.
+    Unusable,
+    /// It says nothing.
+    Silent,
+    /// The player paused.
+    Paused,
+    /// A finger is on it.
+    Touched,
+    /// A finger is on it since the zero was measured, or may have been, so that the zero is a load: what comes after looks like no finger.
+    Under,
+    /// A weight is weighed.
+    Weighing,
+    /// A channel is off.
+    Channel,
+    /// Several channels are off at once, or one after the other with no moment between in which the pad was sound and untouched.
+    Channels,
+    /// Frames are lost or damaged.
+    Loss,
+    /// Its clock does not count microseconds.
+    Clock,
+    /// The loop does not come to run.
+    Frozen,
+    /// What it sent while it was silent comes now.
+    Late,
+    /// It begins anew.
+    Anew,
+    /// Something was over in a moment: a zero that somebody wants anew, an old frame.
+    Moment,
+}
+
+use Cause::{
+    Anew, Channel, Channels, Clock, Denied, Frozen, Gone, Late, Loss, Moment, Paused, Silent, Touched, Under,
+    Unusable, Weighing,
+};
+
+const ALL: [Cause; 16] = [
+    Gone, Denied, Unusable, Silent, Paused, Touched, Under, Weighing, Channel, Channels, Loss, Clock, Frozen,
+    Late, Anew, Moment,
+];
+
+impl Cause {
+    /// So long after it is over the pad plays, µs: half a second. A port is looked for four times a second, and where the clock's pace is in
+    /// doubt the pad is looked at for a second first. Several channels that are off look like several fingers, which play for ten seconds.
+    const fn aftermath_us(self) -> u64 {
+        match self {
+            Gone | Denied | Unusable => 750_000,
+            Clock | Late => 1_500_000,
+            Channels => 10_500_000,
+            _ => 500_000,
+        }
+    }
+
+    /// Whether this state is one that comes of it.
+    const fn explains(self, state: State) -> bool {
+        match self {
+            Gone => matches!(state, State::Waiting),
+            Denied => matches!(state, State::Denied),
+            Unusable => matches!(state, State::Unclear),
+            Silent | Frozen => matches!(state, State::Silent | State::Doubtful),
+            Paused => matches!(state, State::Paused),
+            Touched => matches!(state, State::Loaded | State::Taring),
+            Under => matches!(state, State::Loaded | State::Taring | State::Faulty | State::Doubtful),
+            Weighing => matches!(state, State::Weighing),
+            Channel | Channels => {
+                matches!(state, State::Faulty | State::Doubtful | State::Taring | State::Loaded)
+            }
+            Loss | Clock => matches!(state, State::Doubtful | State::Silent),
+            // What was sent under a finger is heard now.
+            Late => matches!(state, State::Taring | State::Loaded | State::Doubtful | State::Silent),
+            Anew | Moment => matches!(state, State::Taring | State::Doubtful | State::Silent),
+        }
+    }
+
+    /// Whether this finding about the stream is true of it.
+    const fn is_found_as(self, finding: &LineFinding) -> bool {
+        match finding {
+            LineFinding::Loss { .. } => matches!(self, Loss | Frozen | Silent),
+            LineFinding::Clock { .. } => matches!(self, Clock),
+            LineFinding::ChannelStands { .. } => matches!(self, Channel | Channels),
+            // That is what is seen of a pad that begins anew again and again, does not say so, and whose clock goes on.
+            LineFinding::SequenceWraps { .. } => matches!(self, Anew),
+            _ => false,
+        }
+    }
+}
+
+/// When each cause was there last.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Causes([Option<HostInstant>; ALL.len()]);
+
+impl Causes {
+    /// It is there at `now`.
+    pub(super) fn note(&mut self, now: HostInstant, cause: Cause) {
+        self.0[cause as usize] = Some(now);
+    }
+
+    /// Those that were there within the last `us`.
+    pub(super) fn within(&self, now: HostInstant, us: u64) -> impl Iterator<Item = Cause> {
+        ALL.into_iter().filter(move |cause| self.0[*cause as usize].is_some_and(|at| now.us_since(at) <= us))
+    }
+
+    /// Whether a pad has to play: whatever kept it from that is over for long enough.
+    pub(super) fn have_passed(&self, now: HostInstant) -> bool {
+        let passed =
+            |cause: Cause| self.0[cause as usize].is_none_or(|at| now.us_since(at) > cause.aftermath_us());
+        ALL.into_iter().all(passed)
+    }
+
+    /// Whether nothing at all was wrong for `us`.
+    pub(super) fn are_away_for(&self, now: HostInstant, us: u64) -> bool {
+        self.within(now, us).next().is_none()
+    }
+
+    /// Whether a cause within the last `us` makes this state right.
+    pub(super) fn explain(&self, now: HostInstant, us: u64, state: State) -> bool {
+        self.within(now, us).any(|cause| cause.explains(state))
+    }
+
+    /// Whether a cause within the last `us` makes this finding right.
+    pub(super) fn make_true(&self, now: HostInstant, us: u64, finding: &LineFinding) -> bool {
+        self.within(now, us).any(|cause| cause.is_found_as(finding))
+    }
+}

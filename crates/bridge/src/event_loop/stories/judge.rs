@@ -1,0 +1,279 @@
+//! What must hold at every step of a story.
+//!
+//! Safety: each down has one up; nothing is held 100 ms after the last sound sample that was read; nothing goes down without a finger.
+//! Liveness: a sound and untouched pad plays, and the first press after that counts; what keeps a pad from playing is named within three
+//! seconds, by the name of what is really wrong, and no word is said that is not true.
+
+use std::collections::BTreeMap;
+
+use super::super::state;
+use super::super::virtual_time::Play;
+use super::cause::{Cause, Causes};
+use crate::state::State;
+use tactpad_core::pipeline::Phase;
+use tactpad_core::pipeline::control::{Code, OutputDevice};
+use tactpad_core::pipeline::line_check::LineFinding;
+use tactpad_core::time::HostInstant;
+
+/// Silence releases everything within this time, µs.
+const RELEASED_US: u64 = 100_000;
+
+/// What a finger did goes out within this time after its last sample was read: a filter at 100 samples a second, a tap that waits whether it
+/// becomes a long press, the shortest time of a press.
+const GHOST_US: u64 = 600_000;
+
+/// A channel that is off may look like a finger so long, which is then let go of.
+const FAR_US: u64 = 10_500_000;
+
+/// What keeps a pad from playing is named within this time, µs.
+const NAMED_US: u64 = 3_000_000;
+
+/// The words are looked at so often, µs.
+const LOOK_US: u64 = 40_000;
+
+/// What is found about the stream is taken back within this time after it is over: six looks of 0.9 s.
+pub(super) const TAKEN_BACK_US: u64 = 6_500_000;
+
+/// A thing that comes and goes is told once a minute, and a state three times.
+const REPEAT_US: u64 = 63_000_000;
+
+/// A firm press counts within this time, µs: a filter of six samples at 100 a second, and what is between.
+const COUNTS_US: u64 = 120_000;
+
+/// An invariant that broke, and what was seen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Broken {
+    pub(super) rule: &'static str,
+    pub(super) seen: String,
+}
+
+pub(super) fn broken<T>(rule: &'static str, seen: impl ToString) -> Result<T, Broken> {
+    Err(Broken { rule, seen: seen.to_string() })
+}
+
+/// Knows what happened, and watches.
+#[derive(Default)]
+pub(super) struct Judge {
+    pub(super) causes: Causes,
+    down: BTreeMap<(OutputDevice, u16), i32>,
+    /// When the bridge read a sound sample last, and one with a finger.
+    pub(super) heard: Option<HostInstant>,
+    pub(super) touch_heard: Option<HostInstant>,
+    /// When it had heard none for a while.
+    unheard: HostInstant,
+    looked: HostInstant,
+    kept_since: Option<HostInstant>,
+    /// A press that has to count by then.
+    promise: Option<HostInstant>,
+    /// How many messages were read, and when each was told.
+    told: Vec<HostInstant>,
+    /// All that went out, as one number, and the same with its times.
+    pub(super) edges: u64,
+    pub(super) trace: u64,
+}
+
+impl Judge {
+    /// A firm press begins now. It has to count if the pad has to play.
+    pub(super) fn press(&mut self, now: HostInstant) {
+        if self.causes.have_passed(now) {
+            self.promise = Some(now.plus_us(COUNTS_US));
+        }
+    }
+
+    /// Something other than the pad's own fault is in the way of what was promised.
+    pub(super) fn excuse(&mut self) {
+        self.promise = None;
+    }
+
+    /// The loop did not come to run until now.
+    pub(super) fn thaw(&mut self, now: HostInstant, frozen_us: u64) {
+        self.heard = Some(now);
+        // What waited on the line is of the time before.
+        let waited: Vec<Cause> = self.causes.within(now, frozen_us + NAMED_US).collect();
+        waited.into_iter().for_each(|cause| self.causes.note(now, cause));
+        if self.causes.within(now, frozen_us).any(|cause| cause == Cause::Touched) {
+            self.touch_heard = Some(now);
+        }
+        (self.kept_since, self.unheard) = (None, now);
+    }
+
+    /// Takes what went out by now.
+    pub(super) fn take(&mut self, play: &Play) -> Result<(), Broken> {
+        for event in play.taken() {
+            let mix = |sum: u64, value: u64| sum.rotate_left(5).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ value;
+            self.edges = mix(
+                self.edges,
+                event.code.to_string().bytes().fold(event.value as u64, |sum, byte| mix(sum, byte.into())),
+            );
+            self.trace = mix(self.trace ^ self.edges, play.now.as_ns());
+            let Code::Key(code) = event.code else { continue };
+            let before = self.down.insert((event.device, code), event.value).unwrap_or(0);
+            if before == event.value {
+                return broken("each down has one up", format!("{} is {} twice", event.code, event.value));
+            }
+            if event.value != 0 {
+                self.may_go_down(play, &event.code)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn may_go_down(&self, play: &Play, code: &Code) -> Result<(), Broken> {
+        let now = play.now;
+        let was_touched = self.touch_heard.is_some_and(|at| now.us_since(at) <= GHOST_US);
+        let may_be_channel = self.causes.within(now, FAR_US).any(|cause| cause == Cause::Channel);
+        if !was_touched && !may_be_channel {
+            return broken("nothing goes down without a finger", code);
+        }
+        Ok(())
+    }
+
+    /// Looks at the bridge, which comes to run.
+    pub(super) fn look(&mut self, play: &Play) -> Result<(), Broken> {
+        let (now, pipeline) = (play.now, &play.bridge.driver.pipeline);
+        let is_held = pipeline.held().next().is_some();
+        let silent_us = self.heard.map_or(u64::MAX, |heard| now.us_since(heard));
+        if is_held && silent_us > RELEASED_US {
+            return broken("silence releases everything within 100 ms", format!("{silent_us} µs"));
+        }
+        if !is_held && self.down.values().any(|value| *value != 0) {
+            return broken("each down has one up", "a key stays down that nothing holds");
+        }
+        if self.causes.have_passed(now) && pipeline.phase() != Phase::Playing {
+            return broken("a sound pad plays", self.words(play));
+        }
+        self.keep_promise(play, is_held)?;
+        if now.us_since(self.looked) >= LOOK_US {
+            self.looked = now;
+            self.look_at_words(play)?;
+        }
+        Ok(())
+    }
+
+    fn keep_promise(&mut self, play: &Play, is_held: bool) -> Result<(), Broken> {
+        let Some(by) = self.promise else { return Ok(()) };
+        if is_held {
+            self.promise = None;
+        } else if play.now > by {
+            return broken("a press on a sound pad counts", self.words(play));
+        }
+        Ok(())
+    }
+
+    fn look_at_words(&mut self, play: &Play) -> Result<(), Broken> {
+        let now = play.now;
+        let state = state(&play.bridge.driver, &play.bridge.connection);
+        if state == State::Playing {
+            self.kept_since = None;
+        } else {
+            self.kept_since.get_or_insert(now);
+        }
+        let finding = play.bridge.driver.pipeline.line_finding();
+        self.are_told_true(play)?;
+        // It is about the stream as it was heard last.
+        if self.heard.is_none_or(|heard| now.us_since(heard) > RELEASED_US) {
+            self.unheard = now;
+        }
+        let is_heard = now.us_since(self.unheard) > TAKEN_BACK_US;
+        if let Some(finding) =
+            finding.filter(|finding| is_heard && !self.causes.make_true(now, TAKEN_BACK_US, finding))
+        {
+            return broken("what is found is so", format!("{finding}; {}", self.words(play)));
+        }
+        if state != State::Playing && self.kept_since.is_some_and(|since| now.us_since(since) > NAMED_US) {
+            self.is_named(play, state, finding)?;
+        }
+        Ok(())
+    }
+
+    /// What has kept the pad from playing for three seconds has its word, in the status and on the console.
+    fn is_named(&self, play: &Play, state: State, finding: Option<&LineFinding>) -> Result<(), Broken> {
+        let now = play.now;
+        let is_state_right = self.causes.explain(now, NAMED_US, state);
+        if !is_state_right && finding.is_none() {
+            return broken("the status names what keeps a pad from playing", self.words(play));
+        }
+        let messages = play.messages.0.lock().unwrap();
+        let is_right = |line: &String| {
+            STATES.iter().any(|state| line == state.sentence() && self.causes.explain(now, NAMED_US, *state))
+                || finding.is_some_and(|finding| is_of_kind(line, finding))
+                || FOUND.iter().any(|(words, found)| {
+                    line.contains(words) && self.causes.within(now, NAMED_US).any(|cause| cause == *found)
+                })
+        };
+        // What was told last lasts still, or may not be told again yet.
+        let is_about_this = |line: &&String| {
+            STATES.iter().any(|state| *line == state.sentence())
+                || FOUND.iter().any(|(words, _)| line.contains(words))
+                || **line == State::Playing.sentence()
+        };
+        let recent = messages.iter().zip(&self.told).filter(|(_, at)| now.us_since(**at) <= REPEAT_US);
+        let last = messages.iter().rfind(is_about_this);
+        if recent.map(|(line, _)| line).chain(last).any(is_right) {
+            return Ok(());
+        }
+        let told: Vec<String> = messages
+            .iter()
+            .zip(&self.told)
+            .map(|(line, at)| format!("{} s ago: {line}", now.us_since(*at) / 1_000_000))
+            .collect();
+        broken("what keeps a pad from playing is told", format!("{}; {told:#?}", self.words(play)))
+    }
+
+    /// What was told since the last look is true.
+    fn are_told_true(&mut self, play: &Play) -> Result<(), Broken> {
+        let now = play.now;
+        let messages = play.messages.0.lock().unwrap();
+        for line in &messages[self.told.len()..] {
+            self.told.push(now);
+            let Some(state) = STATES.iter().find(|state| state.sentence() == line) else { continue };
+            if !self.causes.explain(now, NAMED_US, *state) {
+                return broken("what is told is so", format!("{line}; {}", self.words(play)));
+            }
+        }
+        Ok(())
+    }
+
+    /// What the bridge says, and what is wrong.
+    pub(super) fn words(&self, play: &Play) -> String {
+        let (now, pipeline) = (play.now, &play.bridge.driver.pipeline);
+        let causes: Vec<Cause> = self.causes.within(now, NAMED_US).collect();
+        let state = state(&play.bridge.driver, &play.bridge.connection).word();
+        let finding = pipeline.line_finding().map(ToString::to_string);
+        format!("it says {state} {finding:?}, and there is {causes:?}")
+    }
+}
+
+/// States that keep from playing.
+const STATES: [State; 11] = [
+    State::Waiting,
+    State::Denied,
+    State::Unclear,
+    State::Silent,
+    State::Taring,
+    State::Loaded,
+    State::Unweighed,
+    State::Weighing,
+    State::Doubtful,
+    State::Faulty,
+    State::Paused,
+];
+
+/// Words of findings about the stream, and what they are about.
+const FOUND: [(&str, Cause); 4] = [
+    ("the pad's clock went on by", Cause::Clock),
+    ("frames are lost or damaged", Cause::Loss),
+    ("all the time while others change", Cause::Channel),
+    ("comes a smaller one", Cause::Anew),
+];
+
+/// Whether this line tells a finding of this kind, whatever its numbers.
+fn is_of_kind(line: &str, finding: &LineFinding) -> bool {
+    let words = |text: &str| -> Vec<String> {
+        text.split_whitespace()
+            .filter(|word| !word.contains(|letter: char| letter.is_ascii_digit()))
+            .map(str::to_owned)
+            .collect()
+    };
+    words(line) == words(&finding.to_string())
+}

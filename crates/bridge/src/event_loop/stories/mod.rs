@@ -1,0 +1,128 @@
+//! Stories: whatever happens to a bridge, in whatever order, nothing stays down and a sound pad plays.
+//!
+//! A seed draws a story of fifty events and more around the real loop and the real pipeline, which have their clock, port and sink from
+//! outside. What an event begins lasts until another one ends it, so that they overlap as they may. [`judge`] says what must hold.
+
+mod cause;
+mod event;
+mod judge;
+mod page;
+mod past;
+mod shrink;
+mod world;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+pub(super) use event::{AWAY, RIGHT};
+use event::{Step, story};
+use judge::{Broken, broken};
+use shrink::shortest;
+use world::{Played, World};
+
+/// One story in so many is watched by a page.
+const WATCHED: u64 = 16;
+
+/// A story that broke an invariant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Failure {
+    step: usize,
+    broken: Broken,
+}
+
+/// Plays a story; what it comes to, or by which step an invariant broke.
+fn play(seed: u64, steps: &[Step], skips: bool) -> Result<Played, Failure> {
+    let (mut world, mut step) = (World::new(seed, seed.is_multiple_of(WATCHED), skips), 0);
+    let played = catch_unwind(AssertUnwindSafe(|| {
+        steps.iter().enumerate().try_for_each(|(number, it)| {
+            step = number;
+            world.step(it)
+        })
+    }));
+    let played = played.unwrap_or_else(|panic| {
+        let text =
+            panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+        broken("nothing panics", text.unwrap_or_default())
+    });
+    played.map(|()| world.played()).map_err(|broken| Failure { step, broken })
+}
+
+/// A story that failed, and its shortest form, as a test has it.
+fn told(seed: u64, steps: &[Step], failure: &Failure) -> String {
+    let breaks =
+        |steps: &[Step]| play(seed, steps, true).is_err_and(|it| it.broken.rule == failure.broken.rule);
+    let shortest = shortest(&steps[..=failure.step], breaks);
+    let shortly = play(seed, &shortest, true).unwrap_err();
+    let lines: Vec<String> =
+        shortest.iter().map(|step| format!("    ({}, {:?}),", step.after_ms, step.event)).collect();
+    format!(
+        "seed {seed}, step {}: {}: {}\nits shortest form, {}:\n{}",
+        failure.step,
+        failure.broken.rule,
+        failure.broken.seen,
+        shortly.broken.seen,
+        lines.join("\n")
+    )
+}
+
+/// What broke in the first of these stories that did.
+fn first_broken(seeds: impl Iterator<Item = u64>) -> Option<String> {
+    seeds.into_iter().find_map(|seed| {
+        let steps = story(seed);
+        play(seed, &steps, true).err().map(|failure| told(seed, &steps, &failure))
+    })
+}
+
+#[test]
+fn whatever_happens_nothing_stays_down_and_a_sound_pad_plays() {
+    let broken = first_broken(0..300);
+    assert!(broken.is_none(), "{}", broken.unwrap_or_default());
+}
+
+#[test]
+fn a_story_whose_quiet_stretches_are_skipped_goes_as_one_that_is_played_through() {
+    let mut skipped = 0;
+    for seed in 0..12 {
+        let steps = story(seed);
+        let outcome = |skips| play(seed, &steps, skips).map(|played| (played.edges, played.skipped_us));
+        let (short, long) = (outcome(true).unwrap(), outcome(false).unwrap());
+        assert_eq!(short.0, long.0, "seed {seed}");
+        assert_eq!(long.1, 0);
+        skipped += usize::from(short.1 > 0);
+    }
+    assert!(skipped > 0, "nothing was skipped");
+}
+
+#[test]
+fn the_same_story_goes_the_same_way() {
+    for seed in 0..4 {
+        let steps = story(seed);
+        assert_eq!(play(seed, &steps, true), play(seed, &steps, true), "seed {seed}");
+    }
+}
+
+/// Goes on where it was broken off: `TACTPAD_STORIES` says how many, `TACTPAD_STORIES_FROM` from which seed.
+#[test]
+fn campaign() {
+    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let Some(count) = number("TACTPAD_STORIES") else { return };
+    let from = number("TACTPAD_STORIES_FROM").unwrap_or(0);
+    let program = std::env::current_exe().unwrap();
+    let place = program.parent().unwrap().join(format!("stories-from-{from}"));
+    let done = std::fs::read_to_string(&place).ok().and_then(|text| text.trim().parse().ok()).unwrap_or(0);
+    let threads = std::thread::available_parallelism().map_or(1, |threads| threads.get() as u64);
+    for begin in (done..count).step_by(BLOCK) {
+        let end = count.min(begin + BLOCK as u64);
+        let broken = std::thread::scope(|scope| {
+            let part =
+                |part| first_broken((from + begin..from + end).filter(move |seed| seed % threads == part));
+            let parts: Vec<_> = (0..threads).map(|number| scope.spawn(move || part(number))).collect();
+            parts.into_iter().find_map(|part| part.join().unwrap())
+        });
+        assert!(broken.is_none(), "{}", broken.unwrap_or_default());
+        std::fs::write(&place, end.to_string()).unwrap();
+        println!("{end} of {count} stories hold");
+    }
+}
+
+/// So many stories are played before it is noted how far the campaign is.
+const BLOCK: usize = 200;

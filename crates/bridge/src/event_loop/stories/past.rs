@@ -1,0 +1,152 @@
+//! Stories that once broke an invariant, in their shortest forms. Each stays a test.
+
+use super::event::Event::{
+    Ask, ClockJump, Damage, DamagePermille, Freeze, Keep, Lift, LossPermille, Mend, Off, OffToo, Pace,
+    PlugIn, PullOut, Rate, Repeat, Restart, Sleep, Stall, Touch,
+};
+use super::event::Off::{Drift, Rail, Saturated, Stuck};
+use super::event::{Event, RIGHT, Step, Wish};
+use super::play;
+use tactpad_core::quantity::Contact;
+
+const PLUG_IN: Event = PlugIn { is_anew: true };
+
+const RESTART: Event = Restart { time_us: 0, is_flagged: true, offset: 295_156, text: 3 };
+
+const HANDLED_BEFORE: Event = Restart { time_us: 0, is_flagged: false, offset: -170_497, text: 0 };
+
+/// A finger that is there while the zero is measured.
+const FINGER: Contact = Contact { x_mm: -21.9, y_mm: -11.2, fx_n: 0.0, fy_n: 0.0, fz_n: 1.2 };
+
+fn holds(steps: &[(u32, Event)]) {
+    let steps: Vec<Step> =
+        steps.iter().map(|(after_ms, event)| Step { after_ms: *after_ms, event: *event }).collect();
+    assert_eq!(play(1, &steps, true).map(|_| ()), Ok(()), "{steps:?}");
+}
+
+#[test]
+fn a_machine_that_stood_still_does_not_accuse_the_pads_clock() {
+    holds(&[(0, PLUG_IN), (1, Freeze(3_000)), (3_239, Mend), (3_000, Mend)]);
+}
+
+#[test]
+fn samples_that_a_hub_kept_do_not_accuse_the_pads_clock() {
+    holds(&[
+        (0, PLUG_IN),
+        (10, Keep(true)),
+        (7_130, Keep(false)),
+        (111, DamagePermille(300)),
+        (0, Mend),
+        (3_000, Mend),
+    ]);
+}
+
+#[test]
+fn an_old_frame_does_not_accuse_the_pads_clock() {
+    let repeat = Repeat { age: 66, frames: 4 };
+    holds(&[
+        (0, Mend),
+        (1_428, ClockJump(14_339_583)),
+        (1, Stall(true)),
+        (384, repeat),
+        (10, Mend),
+        (3_000, Mend),
+    ]);
+}
+
+#[test]
+fn a_clock_that_is_sound_again_is_believed_after_a_second() {
+    holds(&[(0, Mend), (0, Pace(20_000)), (218, Touch(RIGHT)), (0, Mend)]);
+}
+
+#[test]
+fn a_clock_that_is_far_too_fast_is_named_also_after_a_silence() {
+    holds(&[(0, Rate(100)), (1, Mend), (0, Pace(20_000)), (0, Damage(70)), (12_229, Mend)]);
+}
+
+#[test]
+fn frames_that_are_lost_were_sent() {
+    holds(&[(0, Mend), (0, Rate(100)), (0, LossPermille(300)), (5_947, Lift), (0, Mend)]);
+}
+
+#[test]
+fn a_pad_that_falls_silent_is_told_to_be_silent_whatever_its_line_had() {
+    let silent = [(0, PLUG_IN), (0, DamagePermille(25)), (3_000, Keep(true)), (24_731, PullOut), (0, Mend)];
+    holds(&silent);
+    holds(&[(0, PLUG_IN), (0, Off(7, Stuck)), (3_000, Stall(true)), (15_687, Mend)]);
+}
+
+#[test]
+fn another_channel_that_stands_is_told_at_once() {
+    holds(&[(0, Mend), (0, Off(3, Stuck)), (13_000, Off(7, Stuck)), (7_000, Mend)]);
+}
+
+#[test]
+fn states_that_take_turns_do_not_go_without_a_word() {
+    let weigh = |g| Ask(Wish::Weigh { g });
+    holds(&[
+        (0, Mend),
+        (0, weigh(200)),
+        (830, weigh(50)),
+        (950, Event::Identify(2)),
+        (880, Ask(Wish::Pause)),
+        (549, Mend),
+    ]);
+}
+
+#[test]
+fn a_channel_that_drifts_while_the_zero_is_measured_is_no_load() {
+    let anew = Restart { time_us: 14_678_922, is_flagged: true, offset: -330_366, text: 1 };
+    holds(&[(0, Rate(125)), (0, Mend), (0, anew), (0, Off(8, Drift { uv_per_s: 174 })), (2_118, Mend)]);
+    let two = [(0, Off(3, Drift { uv_per_s: 285 })), (0, OffToo(5, Stuck)), (0, PLUG_IN), (0, RESTART)];
+    holds(&[&two[..], &[(859, OffToo(5, Saturated)), (325, Mend)]].concat());
+}
+
+#[test]
+fn a_channel_that_answers_again_has_the_zero_measured_anew() {
+    let sleep = Sleep { s: 1, is_powered: false };
+    let begun =
+        [(0, Rate(100)), (0, PLUG_IN), (0, Off(2, Stuck)), (0, RESTART), (0, Touch(RIGHT)), (0, sleep)];
+    holds(&[&begun[..], &[(1_000, Stall(true)), (10, Mend)]].concat());
+}
+
+#[test]
+fn a_number_that_is_near_by_chance_is_no_sign_that_a_pad_did_not_begin_anew() {
+    let finger = Contact { x_mm: 15.3, y_mm: -1.0, fx_n: 1.3, fy_n: 0.4, fz_n: 1.5 };
+    let first = Restart { time_us: 0, is_flagged: true, offset: -260_853, text: 1 };
+    let second = Restart { time_us: 26_664_772, is_flagged: false, offset: 167_507, text: 3 };
+    holds(&[
+        (0, Rate(100)),
+        (0, Mend),
+        (0, Freeze(3_000)),
+        (0, first),
+        (1_000, Touch(finger)),
+        (805, second),
+        (0, Mend),
+    ]);
+}
+
+#[test]
+fn stream_time_does_not_run_away_from_samples_that_wait() {
+    holds(&[(0, PLUG_IN), (3, Repeat { age: 2, frames: 3 }), (0, Freeze(687)), (687, Mend)]);
+}
+
+#[test]
+fn one_frame_of_the_run_before_is_not_the_lowest_load() {
+    let again = Restart { time_us: 0, is_flagged: false, offset: 0, text: 0 };
+    let begun = [(0, PLUG_IN), (0, HANDLED_BEFORE), (1, Freeze(59)), (59, again), (0, Off(0, Saturated))];
+    holds(&[&begun[..], &[(3, Event::Cure), (0, Repeat { age: 1, frames: 2 }), (21, Mend)]].concat());
+}
+
+#[test]
+fn a_zero_under_a_finger_with_a_channel_that_was_off_is_found_out() {
+    let rail = |channel, mv, noise_uv| Off(channel, Rail { mv, noise_uv });
+    holds(&[
+        (0, PLUG_IN),
+        (0, rail(8, -2, 1)),
+        (0, Touch(FINGER)),
+        (181, Lift),
+        (0, rail(0, -11, 823)),
+        (2_762, Mend),
+    ]);
+}

@@ -1,0 +1,650 @@
+//! The world of a story: a pad, its line, who plays and who looks on, and the machine, around the real loop in virtual time.
+
+use firmware_proto::ENCODED_MAX;
+use firmware_proto::frame::Message;
+use firmware_proto::identity::{Identity, SerialNumber};
+use firmware_proto::link::encode_message;
+use firmware_proto::sample::Status;
+use tactpad_numeric::random::SplitMix64;
+
+use super::super::virtual_time::{ASLEEP, Play, profile};
+use super::super::*;
+use super::cause::Cause;
+use super::event::{AWAY, BOOT_TEXTS, Draw, Event, Off, PADS, PROFILES, PortState, RIGHT, Step, Wish};
+use super::judge::{Broken, Judge, TAKEN_BACK_US, broken};
+use super::page::Page;
+use crate::transport::opener::PadError;
+use tactpad_core::pad::weight::Weight;
+use tactpad_core::quantity::Contact;
+
+/// About each event so much is played at full rate, µs; what is longer and quiet is skipped.
+const DENSE_US: u64 = 2_000_000;
+
+/// A hub keeps so many bytes.
+const KEPT_MAX: usize = 64 << 10;
+
+/// The loop wakes so often in one moment at most.
+const WAKES_MAX: u32 = 1_000;
+
+/// What a story came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Played {
+    /// All that went out, as one number, and the same with its times.
+    pub(super) edges: u64,
+    trace: u64,
+    pub(super) skipped_us: u64,
+}
+
+/// A pad, a bridge and all around them.
+pub(super) struct World {
+    play: Play,
+    judge: Judge,
+    page: Option<Page>,
+    screen: Option<Arc<Mutex<Snapshot>>>,
+    chance: Draw,
+    contact: Contact,
+    rate_hz: u32,
+    next_sample: HostInstant,
+    clock_bits: u32,
+    is_plugged: bool,
+    is_stalled: bool,
+    kept: Option<Vec<u8>>,
+    damage: u32,
+    loss_permille: u32,
+    damage_permille: u32,
+    off: [Option<(Off, i32)>; 9],
+    /// What drifts has drifted by so much, counts.
+    drifted: [f64; 9],
+    /// Channels that were off since the pad was sound and untouched for long enough.
+    was_off: [bool; 9],
+    /// A channel reads otherwise than when the zero was measured, and a finger has been there since.
+    is_zero_old: bool,
+    /// The zero was measured, or may have been, under the finger that is there.
+    is_zero_under: bool,
+    port: PortState,
+    frozen_until: Option<HostInstant>,
+    /// It has not come to run for so long.
+    frozen_us: u64,
+    /// The loop has something to answer.
+    is_asked: bool,
+    /// Profiles that are read by then.
+    read_at: Vec<HostInstant>,
+    is_paused: bool,
+    /// Whether quiet stretches are skipped, and how much was, µs.
+    skips: bool,
+    skipped_us: u64,
+}
+
+impl World {
+    /// A bridge without a pad. The seed draws which frames are lost.
+    pub(super) fn new(seed: u64, is_watched: bool, skips: bool) -> Self {
+        let (page, observers) = if is_watched { Page::attached() } else { (None, Vec::new()) };
+        let play = Play::watched(observers);
+        *play.messages.1.lock().unwrap() = Some(Vec::new());
+        Self {
+            play,
+            judge: Judge::default(),
+            page,
+            screen: None,
+            chance: Draw(SplitMix64::named(seed, "chance")),
+            contact: AWAY,
+            rate_hz: 1_000,
+            next_sample: HostInstant::default(),
+            clock_bits: 64,
+            is_plugged: false,
+            is_stalled: false,
+            kept: None,
+            damage: 0,
+            loss_permille: 0,
+            damage_permille: 0,
+            off: [None; 9],
+            drifted: [0.0; 9],
+            was_off: [false; 9],
+            is_zero_old: false,
+            is_zero_under: false,
+            port: PortState::Free,
+            frozen_until: None,
+            frozen_us: 0,
+            is_asked: false,
+            read_at: Vec::new(),
+            is_paused: false,
+            skips,
+            skipped_us: 0,
+        }
+    }
+
+    /// What it has come to.
+    pub(super) const fn played(&self) -> Played {
+        Played { edges: self.judge.edges, trace: self.judge.trace, skipped_us: self.skipped_us }
+    }
+
+    /// Plays this step.
+    pub(super) fn step(&mut self, step: &Step) -> Result<(), Broken> {
+        self.pass(1_000 * u64::from(step.after_ms))?;
+        self.happen(step.event)?;
+        self.look()
+    }
+
+    /// Lets time pass.
+    fn pass(&mut self, us: u64) -> Result<(), Broken> {
+        let mut end = self.play.now.plus_us(us);
+        while self.play.now < end {
+            let left_us = end.us_since(self.play.now);
+            if self.skips && left_us > DENSE_US && self.is_quiet() {
+                self.skipped_us += left_us - DENSE_US;
+                end = self.play.now.plus_us(DENSE_US);
+            }
+            self.advance(end)?;
+        }
+        Ok(())
+    }
+
+    /// Whether nothing goes on that time would change: the pad lies there, sound and untouched.
+    fn is_quiet(&self) -> bool {
+        let pipeline = &self.play.bridge.driver.pipeline;
+        self.is_plugged
+            && self.judge.causes.are_away_for(self.play.now, DENSE_US)
+            && self.read_at.is_empty()
+            && pipeline.line_finding().is_none()
+            && pipeline.warning().is_none()
+    }
+
+    /// Goes on to the next thing that happens by itself, at `end` at the latest.
+    fn advance(&mut self, end: HostInstant) -> Result<(), Broken> {
+        let samples = self.is_plugged && !self.is_stalled;
+        let sample_at = samples.then(|| self.next_sample.max(self.play.now));
+        let next = [Some(end), sample_at, self.frozen_until, self.read_at.iter().min().copied()];
+        let next = next.into_iter().flatten().min().unwrap_or(end).max(self.play.now);
+        self.wait_until(next)?;
+        if self.frozen_until.is_some_and(|until| until <= next) {
+            self.thaw()?;
+        }
+        self.hand_in_profiles()?;
+        if sample_at == Some(next) {
+            self.sample()?;
+        }
+        self.look()
+    }
+
+    fn wait_until(&mut self, end: HostInstant) -> Result<(), Broken> {
+        let before = self.play.now;
+        if self.frozen_until.is_some() {
+            self.play.now = end;
+            self.frozen_us += end.us_since(before);
+        } else {
+            let (judge, mut taken, mut wakes) = (&mut self.judge, Ok(()), (before, 0));
+            self.play.wait_until(end, |play| {
+                wakes = if wakes.0 == play.now { (play.now, wakes.1 + 1) } else { (play.now, 0) };
+                assert!(wakes.1 < WAKES_MAX, "the loop does not come to rest");
+                if taken.is_ok() {
+                    taken = judge.take(play);
+                }
+            });
+            taken?;
+        }
+        self.pad_time_passes(end.us_since(before));
+        Ok(())
+    }
+
+    /// The pad's clock goes on.
+    fn pad_time_passes(&mut self, us: u64) {
+        let shown_us = us * self.play.us_per_ms / 1_000;
+        self.set_clock(self.play.time_us.wrapping_add(shown_us));
+    }
+
+    fn set_clock(&mut self, time_us: u64) {
+        let shown_us = if self.clock_bits < 64 { time_us & ((1 << self.clock_bits) - 1) } else { time_us };
+        if shown_us < self.play.time_us {
+            self.note_moment();
+        }
+        self.play.time_us = shown_us;
+    }
+
+    /// The pad takes a sample.
+    fn sample(&mut self) -> Result<(), Broken> {
+        let period_us = 1_000_000 / u64::from(self.rate_hz);
+        self.next_sample = self.play.now.plus_us(period_us);
+        for (channel, off) in self.off.iter().enumerate() {
+            if let Some((Off::Drift { uv_per_s }, _)) = off {
+                let step = f64::from(*uv_per_s) * 100.0 / f64::from(self.rate_hz);
+                let before = self.drifted[channel] as i32;
+                self.drifted[channel] += step;
+                self.play.offset[channel] += self.drifted[channel] as i32 - before;
+            }
+        }
+        let sample = self.play.sample(&self.contact);
+        let mut frame = [0; ENCODED_MAX];
+        let length = encode_message(&Message::Sample(sample), &mut frame);
+        let is_hit = |draw: &mut Draw, permille: u32| permille > 0 && draw.below(1_000) < u64::from(permille);
+        if is_hit(&mut self.chance, self.loss_permille) {
+            return Ok(());
+        }
+        if self.damage > 0 || is_hit(&mut self.chance, self.damage_permille) {
+            self.judge.causes.note(self.play.now, Cause::Loss);
+            self.damage = self.damage.saturating_sub(1);
+            let place = self.chance.below(length as u64 - 1) as usize;
+            frame[place] ^= 1 + self.chance.below(255) as u8;
+            return self.send(&frame[..length], false);
+        }
+        self.send(&frame[..length], true)
+    }
+
+    /// Bytes leave the pad. They may be a sound sample.
+    fn send(&mut self, bytes: &[u8], is_sound: bool) -> Result<(), Broken> {
+        if let Some(kept) = &mut self.kept {
+            if kept.len() + bytes.len() <= KEPT_MAX {
+                kept.extend_from_slice(bytes);
+            }
+            return Ok(());
+        }
+        if self.frozen_until.is_some() {
+            self.play.buffer(bytes);
+            return Ok(());
+        }
+        if self.play.bridge.connection.pad().is_some() && is_sound {
+            self.hear();
+        }
+        self.play.send_to(bytes);
+        self.read()
+    }
+
+    /// The bridge is about to read a sound sample.
+    fn hear(&mut self) {
+        self.judge.heard = Some(self.play.now);
+        if self.contact.fz_n > 0.0 {
+            self.judge.touch_heard = Some(self.play.now);
+        }
+    }
+
+    /// The bridge reads all that is there.
+    fn read(&mut self) -> Result<(), Broken> {
+        loop {
+            let woken = Woken { pad: self.play.is_hung_up_or_readable(), request: self.is_asked };
+            self.is_asked = false;
+            if !woken.pad && !woken.request {
+                return Ok(());
+            }
+            self.play.turn(woken);
+            self.judge.take(&self.play)?;
+        }
+    }
+
+    /// The loop comes to run again. What waits for it may be of any time since it did not.
+    fn thaw(&mut self) -> Result<(), Broken> {
+        self.frozen_until = None;
+        self.judge.thaw(self.play.now, self.frozen_us);
+        self.frozen_us = 0;
+        self.read()?;
+        self.play.turn(ASLEEP);
+        self.judge.take(&self.play)
+    }
+
+    fn hand_in_profiles(&mut self) -> Result<(), Broken> {
+        let now = self.play.now;
+        let due = self.read_at.iter().filter(|at| **at <= now).count();
+        if due == 0 {
+            return Ok(());
+        }
+        self.read_at.retain(|at| *at > now);
+        for _ in 0..due {
+            let reading = {
+                let mut all = self.play.messages.1.lock().unwrap();
+                all.as_mut().filter(|all| !all.is_empty()).map(|all| all.remove(0))
+            };
+            let Some((request, reply)) = reading else { break };
+            reply.hand_in(match request {
+                ProfileRequest::Named(name) => profile(&name),
+                ProfileRequest::Same => profile(PROFILES[0]),
+                ProfileRequest::Next => profile(PROFILES[self.chance.below(PROFILES.len() as u64) as usize]),
+            });
+            self.is_asked = true;
+        }
+        if self.frozen_until.is_some() { Ok(()) } else { self.read() }
+    }
+
+    /// Looks at the bridge, unless it does not come to run.
+    fn look(&mut self) -> Result<(), Broken> {
+        if let Some(page) = &mut self.page {
+            page.take();
+        }
+        self.note_causes();
+        if self.frozen_until.is_some() { Ok(()) } else { self.judge.look(&self.play) }
+    }
+
+    /// Notes what keeps the pad from playing at this moment.
+    fn note_causes(&mut self) {
+        let now = self.play.now;
+        let is_open = self.play.bridge.connection.pad().is_some();
+        let phase = self.play.bridge.driver.pipeline.phase();
+        let is_off = self.off.iter().any(Option::is_some) || self.is_zero_old;
+        if !is_off && self.judge.causes.have_passed(now) {
+            self.was_off = [false; 9];
+        }
+        let is_several = is_off && self.was_off.iter().filter(|was_off| **was_off).count() > 1;
+        let there = [
+            (Cause::Gone, !self.is_plugged),
+            (Cause::Denied, self.is_plugged && !is_open && self.port == PortState::Denied),
+            (Cause::Unusable, self.is_plugged && !is_open && self.port == PortState::Unusable),
+            (Cause::Silent, self.is_stalled || self.kept.is_some()),
+            (Cause::Paused, self.is_paused),
+            (Cause::Touched, self.contact.fz_n > 0.0),
+            (Cause::Under, self.is_zero_under),
+            (Cause::Weighing, phase == Phase::Weighing),
+            (Cause::Channel, is_off),
+            (Cause::Channels, is_several),
+            (Cause::Loss, self.damage > 0 || self.loss_permille > 0 || self.damage_permille > 0),
+            (Cause::Clock, self.play.us_per_ms / 100 != 10 && self.play.us_per_ms != 990),
+            (Cause::Frozen, self.frozen_until.is_some()),
+        ];
+        for (cause, _) in there.into_iter().filter(|(_, is_there)| *is_there) {
+            self.judge.causes.note(now, cause);
+            if cause != Cause::Touched {
+                self.judge.excuse();
+            }
+        }
+    }
+
+    /// Something is over in a moment.
+    fn note_moment(&mut self) {
+        self.judge.causes.note(self.play.now, Cause::Moment);
+        self.is_zero_under |= self.contact.fz_n > 0.0;
+        self.judge.excuse();
+    }
+
+    fn happen(&mut self, event: Event) -> Result<(), Broken> {
+        match event {
+            Event::Touch(contact) => self.touch(contact),
+            Event::Lift => self.touch(AWAY),
+            Event::Ask(wish) => return self.ask(wish),
+            Event::ReaderStall(is_stalled) => self.play.written.0.lock().unwrap().is_stalled = is_stalled,
+            Event::PageStall(is_stalled) => {
+                if let Some(page) = &mut self.page {
+                    page.is_stalled = is_stalled;
+                }
+            }
+            Event::Screen(looks) => self.screen = looks.then(|| self.play.bridge.snapshot()),
+            Event::Freeze(ms) => {
+                let until = self.play.now.plus_us(1_000 * u64::from(ms));
+                self.frozen_until = Some(self.frozen_until.unwrap_or_default().max(until));
+            }
+            Event::Mend => return self.mend(),
+            event => return self.happen_to_pad(event),
+        }
+        Ok(())
+    }
+
+    fn touch(&mut self, contact: Contact) {
+        let presses_anew = self.contact == AWAY && contact == RIGHT;
+        let was_touched = std::mem::replace(&mut self.contact, contact).fz_n > 0.0;
+        let is_touched = contact.fz_n > 0.0;
+        self.is_zero_old &= is_touched;
+        let begins_early = !was_touched && !self.judge.causes.have_passed(self.play.now);
+        self.is_zero_under = is_touched && (self.is_zero_under || begins_early);
+        self.judge.excuse();
+        if presses_anew && self.frozen_until.is_none() {
+            self.judge.press(self.play.now);
+        }
+    }
+
+    fn happen_to_pad(&mut self, event: Event) -> Result<(), Broken> {
+        let play = &mut self.play;
+        match event {
+            Event::PlugIn { is_anew } if !self.is_plugged => {
+                self.is_plugged = true;
+                self.judge.causes.note(play.now, Cause::Anew);
+                play.plug_in();
+                if is_anew {
+                    (play.time_us, play.sequence, play.status) = (0, 0, Status::OK.with_restarted());
+                }
+            }
+            Event::PullOut if self.is_plugged => {
+                self.is_plugged = false;
+                self.judge.causes.note(play.now, Cause::Gone);
+                play.unplug();
+                self.kept = self.kept.take().map(|_| Vec::new());
+                if self.frozen_until.is_none() {
+                    self.read()?;
+                }
+            }
+            Event::Port(state) => {
+                self.port = state;
+                *play.plug.refusal.lock().unwrap() = match state {
+                    PortState::Free => None,
+                    PortState::Denied => Some(PadError::Denied("no".into())),
+                    PortState::Unusable => Some(PadError::Unusable("no".into())),
+                };
+            }
+            Event::Restart { time_us, is_flagged, offset, text } => {
+                self.judge.causes.note(play.now, Cause::Anew);
+                (play.sequence, play.offset) = (0, [offset; 9]);
+                play.status = if is_flagged { Status::OK.with_restarted() } else { Status::OK };
+                self.set_clock(time_us);
+                self.send_if_plugged(BOOT_TEXTS[text].as_bytes())?;
+            }
+            Event::Identify(pad) => self.identify(pad)?,
+            Event::Rate(rate_hz) => self.rate_hz = rate_hz,
+            Event::Stall(is_stalled) => self.is_stalled = is_stalled,
+            Event::Keep(true) => drop(self.kept.get_or_insert_default()),
+            Event::Keep(false) => self.hand_on()?,
+            Event::Lose(frames) => play.sequence = play.sequence.wrapping_add(frames),
+            Event::Damage(frames) => self.damage = frames,
+            Event::LossPermille(permille) => self.loss_permille = permille,
+            Event::DamagePermille(permille) => self.damage_permille = permille,
+            Event::Rubbish(seed) => {
+                let mut draw = Draw(SplitMix64::named(seed, "rubbish"));
+                let bytes: Vec<u8> = (0..=draw.below(100)).map(|_| draw.below(256) as u8).collect();
+                self.send_if_plugged(&bytes)?;
+            }
+            Event::Repeat { age, frames } => self.repeat(age, frames)?,
+            Event::ClockJump(time_us) => self.set_clock(time_us),
+            Event::ClockBits(bits) => {
+                self.clock_bits = bits;
+                self.set_clock(self.play.time_us);
+            }
+            Event::Pace(us_per_ms) => play.us_per_ms = u64::from(us_per_ms),
+            Event::Off(channel, off) => {
+                self.cure();
+                return self.happen_to_pad(Event::OffToo(channel, off));
+            }
+            Event::OffToo(channel, off) => {
+                self.was_off[channel] = true;
+                let reads = play.sent.back().map_or(0, |sent| sent.counts[channel]);
+                self.off[channel] = Some((off, reads));
+                self.wire();
+            }
+            Event::Cure => self.cure(),
+            Event::Sleep { s, is_powered } => self.sleep(s, is_powered)?,
+            _ => return Ok(()),
+        }
+        self.note_moment();
+        if matches!(event, Event::Lose(_)) {
+            self.judge.causes.note(self.play.now, Cause::Loss);
+        }
+        Ok(())
+    }
+
+    fn send_if_plugged(&mut self, bytes: &[u8]) -> Result<(), Broken> {
+        if self.is_plugged && !bytes.is_empty() { self.send(bytes, false) } else { Ok(()) }
+    }
+
+    fn cure(&mut self) {
+        self.is_zero_old |= self.off.iter().any(Option::is_some) && self.contact.fz_n > 0.0;
+        self.off = [None; 9];
+        self.wire();
+    }
+
+    /// Lays the pad's wires as they are now.
+    fn wire(&mut self) {
+        let off = self.off;
+        self.play.wiring = Box::new(move |number, counts| {
+            for (count, off) in counts.iter_mut().zip(off) {
+                *count = match off {
+                    Some((Off::Saturated, _)) => (1 << 23) - 1,
+                    Some((Off::Stuck, reads)) => reads,
+                    Some((Off::Rail { mv, noise_uv }, _)) => {
+                        let noise = (number.wrapping_mul(2_654_435_761) >> 16) as i32;
+                        100_000 * mv + noise % (200 * noise_uv + 1) - 100 * noise_uv
+                    }
+                    Some((Off::Drift { .. }, _)) | None => *count,
+                };
+            }
+        });
+    }
+
+    fn identify(&mut self, pad: usize) -> Result<(), Broken> {
+        let identity = Identity {
+            serial_number: SerialNumber::from_ascii(PADS[pad]).unwrap(),
+            channels: 9,
+            count_bits: 24,
+            rate_hz: self.rate_hz as u16,
+            picovolts_per_count: 10_000,
+        };
+        self.send_message(&Message::Identity(identity), false)
+    }
+
+    fn send_message(&mut self, message: &Message, is_sound: bool) -> Result<(), Broken> {
+        let mut frame = [0; ENCODED_MAX];
+        let length = encode_message(message, &mut frame);
+        if self.is_plugged { self.send(&frame[..length], is_sound) } else { Ok(()) }
+    }
+
+    /// The hub hands on what it has kept.
+    fn hand_on(&mut self) -> Result<(), Broken> {
+        let Some(kept) = self.kept.take().filter(|kept| !kept.is_empty()) else { return Ok(()) };
+        self.judge.causes.note(self.play.now, Cause::Late);
+        if self.frozen_until.is_some() {
+            kept.chunks(64).for_each(|bytes| self.play.buffer(bytes));
+            return Ok(());
+        }
+        if self.play.bridge.connection.pad().is_some() {
+            self.judge.heard = Some(self.play.now);
+            // A finger may have been there meanwhile.
+            self.judge.touch_heard = Some(self.play.now);
+        }
+        self.play.send_to(&kept);
+        self.read()
+    }
+
+    /// Frames come again: those that were sent, or where that is too long ago such as they may have been.
+    fn repeat(&mut self, age: u32, frames: u32) -> Result<(), Broken> {
+        for back in 0..frames.min(age) {
+            let number = self.play.sequence.wrapping_sub(age).wrapping_add(back);
+            let sent = self.play.sent.iter().rev().find(|sent| sent.sequence == number).copied();
+            let older = self.play.sent.front().copied();
+            let Some(sample) = sent.or(older) else { return Ok(()) };
+            self.send_message(&Message::Sample(sample), false)?;
+        }
+        Ok(())
+    }
+
+    /// The machine sleeps. Its clock does not go on; the pad's does, if it has power, and what it sends is lost.
+    fn sleep(&mut self, s: u32, is_powered: bool) -> Result<(), Broken> {
+        if is_powered {
+            self.pad_time_passes(1_000_000 * u64::from(s));
+            self.play.sequence = self.play.sequence.wrapping_add(s * self.rate_hz);
+            self.judge.causes.note(self.play.now, Cause::Loss);
+            return Ok(());
+        }
+        if self.is_plugged {
+            self.happen_to_pad(Event::PullOut)?;
+            self.happen_to_pad(Event::PlugIn { is_anew: true })?;
+        }
+        Ok(())
+    }
+
+    fn ask(&mut self, wish: Wish) -> Result<(), Broken> {
+        let request = match wish {
+            Wish::Pause => Request::Pause,
+            Wish::Resume => Request::Resume,
+            Wish::TogglePause => Request::TogglePause,
+            Wish::Tare => Request::Retare,
+            Wish::Panic => Request::ReleaseAll,
+            Wish::Profile { number, .. } => Request::Profile(Some(PROFILES[number].into())),
+            Wish::NextProfile { .. } => Request::NextProfile,
+            Wish::Reload { .. } => Request::Profile(None),
+            Wish::Edit(number) => Request::UpdateProfile(Box::new(ProfileUpdate {
+                read: profile(PROFILES[number]),
+                reason: None,
+                request_count: 0,
+            })),
+            Wish::Break => Request::UpdateProfile(Box::new(ProfileUpdate {
+                read: Err("line 3 is wrong".into()),
+                reason: None,
+                request_count: 0,
+            })),
+            Wish::Preview(number) => Request::Preview(Box::new(profile(PROFILES[number]).unwrap())),
+            Wish::Weigh { g } => Request::Weigh(Weight::of_g(g.into()).unwrap()),
+            Wish::Status => Request::Status,
+        };
+        match wish {
+            Wish::Pause => self.is_paused = true,
+            Wish::Resume => self.is_paused = false,
+            Wish::TogglePause => self.is_paused = !self.is_paused,
+            Wish::Profile { read_ms, .. } | Wish::NextProfile { read_ms } | Wish::Reload { read_ms } => {
+                self.read_at.push(self.play.now.plus_us(1_000 * u64::from(read_ms)));
+            }
+            _ => {}
+        }
+        match wish {
+            Wish::Tare => self.note_moment(),
+            Wish::Pause | Wish::Resume | Wish::TogglePause | Wish::Panic | Wish::Weigh { .. } => {
+                self.note_moment();
+            }
+            _ => {}
+        }
+        self.play.bridge.requests.sender().unwrap().send(request).unwrap();
+        self.is_asked = true;
+        if self.frozen_until.is_some() { Ok(()) } else { self.read() }
+    }
+
+    /// Puts everything right. Then the pad plays, and the first press counts.
+    fn mend(&mut self) -> Result<(), Broken> {
+        if let Some(until) = self.frozen_until {
+            self.pass(until.us_since(self.play.now) + 1)?;
+        }
+        for event in [
+            Event::Lift,
+            Event::Cure,
+            Event::Damage(0),
+            Event::LossPermille(0),
+            Event::DamagePermille(0),
+            Event::Pace(1_000),
+            Event::Stall(false),
+            Event::Keep(false),
+            Event::ReaderStall(false),
+            Event::Port(PortState::Free),
+            Event::PlugIn { is_anew: true },
+            Event::Ask(Wish::Resume),
+        ] {
+            self.happen(event)?;
+        }
+        self.note_causes();
+        self.settle()?;
+        self.touch(RIGHT);
+        self.pass(150_000)?;
+        self.touch(AWAY);
+        self.pass(250_000)?;
+        if self.play.bridge.driver.pipeline.held().next().is_some() {
+            return broken("nothing stays down", self.judge.words(&self.play));
+        }
+        let shown = self.page.as_mut().map_or(Ok(()), |page| page.is_like(&self.play.bridge.driver.pipeline));
+        shown.or_else(|what| broken("the same calls give the same events", what))
+    }
+
+    /// Waits until the pad has to play.
+    fn settle(&mut self) -> Result<(), Broken> {
+        // A weighing ends by itself after some time.
+        let mut left_ms = 25_000;
+        while !self.judge.causes.have_passed(self.play.now) {
+            if left_ms == 0 {
+                return broken("all comes to its end", self.judge.words(&self.play));
+            }
+            left_ms -= 10;
+            self.pass(10_000)?;
+        }
+        if self.play.bridge.driver.pipeline.line_finding().is_some() {
+            self.pass(TAKEN_BACK_US)?;
+        }
+        Ok(())
+    }
+}

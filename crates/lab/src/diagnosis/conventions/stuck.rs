@@ -68,7 +68,7 @@ mod tests {
         let force = |at: usize| 1.0 + (at * 7 % 20) as f64 / 10.0;
         let contact = |row: usize| {
             let fz_n = force(if stuck.contains(&row) { stuck.start } else { row });
-            let off = if row % 2 == 0 { 1.1 } else { 0.9 };
+            let off = if row.is_multiple_of(2) { 1.1 } else { 0.9 };
             WrittenContact {
                 row,
                 decoded: DecodedContact {

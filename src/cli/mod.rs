@@ -59,7 +59,7 @@ fn verbs(group: &Command) -> String {
         let about = verb.get_about().map(ToString::to_string).unwrap_or_default();
         wrapped::hanging(&format!("  {:11}  ", verb.get_name()), &about) + "\n"
     };
-    group.get_subcommands().map(verb).collect()
+    group.get_subcommands().filter(|verb| !verb.is_hide_set()).map(verb).collect()
 }
 
 /// The words of the command line, or those that are meant where there are none; `None` if that is done already.
@@ -108,7 +108,9 @@ mod tests {
     /// The command and all below it, each under its whole name.
     fn all(command: &Command, before: &str, into: &mut Vec<(String, Command)>) {
         let name = format!("{before}{}", command.get_name());
-        for below in command.get_subcommands().filter(|below| below.get_name() != "help") {
+        for below in
+            command.get_subcommands().filter(|below| below.get_name() != "help" && !below.is_hide_set())
+        {
             all(below, &format!("{name} "), into);
         }
         into.push((name, command.clone()));

@@ -1,14 +1,18 @@
-//! Keys that a killed bridge leaves down on an X server, which nobody but the next bridge can lift.
+//! Keys that a killed bridge leaves down on an X server: its guardian lifts them, and where that is killed, too, the next bridge.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use std::fs;
+use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::process::Output;
+use std::thread;
+use std::time::Duration;
 
-use rustix::process::Signal;
+use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use tactpad::bridge::sink::Sink;
-use tactpad::bridge::sink::x11::{LeftDown, Treatment, X11Sink, left_down};
+use tactpad::bridge::sink::x11::{HeldRecords, LeftDown, Treatment, X11Sink, left_down};
+use tactpad::numeric::random::SplitMix64;
 use tactpad::pipeline::control::Code;
 use x11rb::protocol::xproto::{BUTTON_PRESS_EVENT, KEY_PRESS_EVENT};
 use x11rb::protocol::xtest::ConnectionExt as _;
@@ -46,14 +50,36 @@ fn dead_record(folder: &Path, display: &str, down: &[u8]) -> PathBuf {
     path
 }
 
-/// A program that was killed while it held a key on the server.
-fn killed(server: &Server) -> Running {
+/// A bridge that plays a capture on the server, and holds a key.
+fn pressing(server: &Server) -> Running {
     let folder = tempfile::tempdir().unwrap();
     let pad = format!("capture:{}", write_capture(folder.path()).display());
     let mut program = Running::program(TACTPAD, folder.path());
     program.args(["run", "--pad", &pad, "--output", "x11"]).env("DISPLAY", &server.display);
-    let mut bridge = Running::start(folder, program);
+    let bridge = Running::start(folder, program);
     assert!(comes_true(|| server.keys_down() > 0), "nothing is pressed: {}", bridge.told());
+    bridge
+}
+
+/// The guardians of bridges that have their records in this folder.
+fn guardians(folder: &Path) -> Vec<Pid> {
+    let is_guardian = |path: &Path| {
+        let line = fs::read(path.join("cmdline")).unwrap_or_default();
+        let words: Vec<&[u8]> = line.split(|byte| *byte == 0).collect();
+        words.get(1) == Some(&b"guard-keys".as_slice())
+            && words.get(2).is_some_and(|record| record.starts_with(folder.as_os_str().as_bytes()))
+    };
+    let processes = fs::read_dir("/proc").unwrap().flatten().map(|entry| entry.path());
+    let found = processes.filter(|path| is_guardian(path));
+    found.filter_map(|path| Pid::from_raw(path.file_name()?.to_str()?.parse().ok()?)).collect()
+}
+
+/// A program that was killed with its guardian while it held a key on the server.
+fn killed(server: &Server) -> Running {
+    let mut bridge = pressing(server);
+    let guardians = guardians(bridge.folder.path());
+    assert_eq!(guardians.len(), 1);
+    guardians.iter().for_each(|guardian| kill_process(*guardian, Signal::KILL).unwrap());
     bridge.signal(Signal::KILL);
     assert!(bridge.ends().is_some());
     assert!(server.keys_down() > 0, "an X server releases nothing");
@@ -64,6 +90,61 @@ fn asked(bridge: &Running, server: &Server, line: &str) -> Output {
     let mut program = Running::program(TACTPAD, bridge.folder.path());
     program.args(line.split(' ')).env("DISPLAY", &server.display);
     program.stdout(std::process::Stdio::piped()).output().unwrap()
+}
+
+/// So many servers at once, each with a bridge.
+const SERVERS: u64 = 5;
+
+/// How often a bridge is killed, and by what draws: `TACTPAD_KILLS`.
+fn kills() -> u64 {
+    std::env::var("TACTPAD_KILLS").map_or(50, |kills| kills.parse().unwrap())
+}
+
+#[test]
+fn a_bridge_that_is_killed_at_any_moment_leaves_nothing_down() {
+    if !require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    thread::scope(|scope| {
+        for first in 0..SERVERS {
+            scope.spawn(move || {
+                let server = Server::start();
+                (first..kills())
+                    .step_by(SERVERS as usize)
+                    .for_each(|seed| leaves_nothing_down(&server, seed));
+            });
+        }
+    });
+}
+
+/// Kills a bridge at a moment and in a way that are drawn.
+fn leaves_nothing_down(server: &Server, seed: u64) {
+    let mut random = SplitMix64::new(seed);
+    let mut bridge = pressing(server);
+    thread::sleep(Duration::from_millis(random.next_bits() % 300));
+    let signals = [Signal::KILL, Signal::SEGV, Signal::BUS, Signal::ILL];
+    let signal = signals[random.next_bits() as usize % signals.len()];
+    bridge.signal(signal);
+    assert!(bridge.ends().is_some());
+    assert!(comes_true(|| server.keys_down() == 0), "kill {seed} by {signal:?}: {} down", server.keys_down());
+    assert!(comes_true(|| guardians(bridge.folder.path()).is_empty()), "kill {seed}: its guardian goes on");
+    assert_eq!(records(bridge.folder.path()).len(), 0, "kill {seed}");
+}
+
+#[test]
+fn a_bridge_that_ends_takes_its_guardian_with_it() {
+    if !require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    let server = Server::start();
+    let mut bridge = pressing(&server);
+    let folder = bridge.folder.path().to_owned();
+    // As a service's end asks all of its processes.
+    guardians(&folder).iter().for_each(|guardian| kill_process(*guardian, Signal::TERM).unwrap());
+    bridge.signal(Signal::TERM);
+    assert!(bridge.ends().is_some());
+    assert_eq!(server.keys_down(), 0);
+    assert!(comes_true(|| guardians(&folder).is_empty()));
 }
 
 #[test]
@@ -114,7 +195,8 @@ fn what_the_living_and_other_programs_hold_stays_down() {
     press(&server, &[(BUTTON_PRESS_EVENT, 3), (KEY_PRESS_EVENT, z), (KEY_PRESS_EVENT, q)]);
     // The same screen by another name.
     let display = format!("{}.0", server.display);
-    let mut living = X11Sink::open(Some(&display), Some(folder.path())).unwrap();
+    let mut living =
+        X11Sink::open(Some(&display), Some(HeldRecords { folder: folder.path(), guardian: None })).unwrap();
     put(&mut living, &[event(X, 1)]);
     let codes = vec![Code::Key(0x111), Code::Key(Z)];
     let expected = [LeftDown::Held { display: server.display.clone(), codes }];
@@ -161,7 +243,9 @@ fn a_key_is_recorded_before_it_goes_down_and_until_its_release_is_done() {
     }
     let server = Server::start();
     let folder = tempfile::tempdir().unwrap();
-    let mut sink = X11Sink::open(Some(&server.display), Some(folder.path())).unwrap();
+    let mut sink =
+        X11Sink::open(Some(&server.display), Some(HeldRecords { folder: folder.path(), guardian: None }))
+            .unwrap();
     let is_recorded = |key: u16| {
         let text = fs::read_to_string(&records(folder.path())[0]).unwrap();
         text.lines().nth(2).unwrap().as_bytes()[usize::from(key) + 8] == b'1'

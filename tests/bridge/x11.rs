@@ -10,7 +10,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use tactpad::bridge::clock::Clock;
 use tactpad::bridge::latency::{Durations, Percentiles};
 use tactpad::bridge::sink::Sink;
-use tactpad::bridge::sink::x11::X11Sink;
+use tactpad::bridge::sink::x11::{HeldRecords, X11Sink};
 use tactpad::pipeline::control::{Code, OutputDevice, OutputEvent};
 use tactpad::pipeline::mapping::profile::Binding;
 use tactpad::time::StreamInstant;
@@ -361,7 +361,9 @@ fn two_thousand_presses_arrive_in_order_and_are_quick() {
     let server = Server::start();
     let client = Client::open(&server.display);
     let records = tempfile::tempdir().unwrap();
-    let mut sink = X11Sink::open(Some(&server.display), Some(records.path())).unwrap();
+    let mut sink =
+        X11Sink::open(Some(&server.display), Some(HeldRecords { folder: records.path(), guardian: None }))
+            .unwrap();
     let clock = Clock::start();
     let [mut calls, mut round_trips] = [Durations::new(), Durations::new()];
     for press in presses(2_000) {

@@ -1,13 +1,14 @@
 //! Key presses and the pointer through the X server, for machines where no virtual device may be made.
 //!
-//! They reach X11 programs only. Dropping the sink releases them. Nothing does when the program is killed, so what is held stands in
-//! a record, by which the next start lifts it (`x11/left_down.rs`). A thread of its own writes to the server: one that stands still keeps nobody waiting. Keys go out by number, not by symbol: the X server numbers a key 8 higher than the kernel, so a
+//! They reach X11 programs only. Dropping the sink releases them. The server does not when the program is killed, so what is held stands in
+//! a record, by which a process that outlives this one (`x11/guardian.rs`), or else the next start, lifts it (`x11/left_down.rs`). A thread of its own writes to the server: one that stands still keeps nobody waiting. Keys go out by number, not by symbol: the X server numbers a key 8 higher than the kernel, so a
 //! profile means the same key here as with the virtual keyboard.
 //!
 //! The pointer goes through enigo. Keys do not: for each, enigo asks the server for all its devices before it
 //! sends the key, which takes more than twice as long; and a symbol that the layout has only with Shift it
 //! moves to a spare key, after which each press comes 12 ms late (enigo-rs/enigo#489).
 
+mod guardian;
 mod held_record;
 mod left_down;
 mod writer;
@@ -15,6 +16,7 @@ mod writer;
 use std::collections::BTreeSet;
 use std::io;
 use std::path::Path;
+use std::process::Command;
 
 use enigo::{Button, Direction, Enigo, NewConError, Settings};
 use x11rb::connection::Connection;
@@ -22,6 +24,7 @@ use x11rb::errors::{ConnectError, ReplyError};
 use x11rb::protocol::xproto::ConnectionExt as _;
 use x11rb::protocol::{xinput, xtest};
 
+pub use self::guardian::guard;
 use self::held_record::HeldRecord;
 pub use self::left_down::{LeftDown, Treatment, left_down};
 use self::writer::{X11Action, X11Writer};
@@ -49,6 +52,15 @@ pub struct X11Sink {
     keyboard: KeyboardLayout,
 }
 
+/// Where it stands what a sink holds, and who lifts that if the sink's process is killed.
+#[derive(Debug)]
+pub struct HeldRecords<'p> {
+    /// The folder of the records.
+    pub folder: &'p Path,
+    /// A program that calls [`guard`] with its last argument, which this adds; without one the next start lifts.
+    pub guardian: Option<Command>,
+}
+
 /// The keys of an X display.
 struct KeyboardLayout {
     display: String,
@@ -57,13 +69,13 @@ struct KeyboardLayout {
 }
 
 impl X11Sink {
-    /// Connects to `display`, for example `:0`, or to the one of the environment. In the folder `records`, if there is one, stands what
-    /// is held as long as it plays.
+    /// Connects to `display`, for example `:0`, or to the one of the environment. In `records`, if there are any, stands what is held as
+    /// long as it plays.
     ///
     /// # Errors
     /// No X server answers, or it takes no key presses from programs, or it numbers its keys in another way; or the folder takes no
-    /// file.
-    pub fn open(display: Option<&str>, records: Option<&Path>) -> Result<Self, SinkError> {
+    /// file; or the guardian does not start.
+    pub fn open(display: Option<&str>, records: Option<HeldRecords<'_>>) -> Result<Self, SinkError> {
         let environment = || std::env::var("DISPLAY").unwrap_or_default();
         let place = display.map_or_else(environment, str::to_owned);
         let (connection, _) = x11rb::connect(display).map_err(|error| no_server(&place, &error))?;
@@ -75,13 +87,25 @@ impl X11Sink {
             Ok(enigo) => (Some(enigo), None),
             Err(error) => (None, Some(no_injection(&place, &error).message)),
         };
-        let record = records
-            .map(|folder| HeldRecord::create(folder, &place).map_err(|error| no_record(folder, &error)));
-        let mut writer = X11Writer::new(connection, enigo, place.clone(), record.transpose()?);
+        let record = records.map(|records| records.begun(&place)).transpose()?;
+        let mut writer = X11Writer::new(connection, enigo, place.clone(), record);
         let queue = WriteQueue::start("x11", QUEUE_ACTIONS_MAX, move |actions| writer.write(actions))
             .map_err(|error| failed(&error))?;
         let keyboard = KeyboardLayout { display: place, has_symbol };
         Ok(Self { groups: QueuedGroups::new(queue), pointer_error, keyboard })
+    }
+}
+
+impl HeldRecords<'_> {
+    /// A record on this display, and its guardian.
+    fn begun(self, display: &str) -> Result<HeldRecord, SinkError> {
+        let record =
+            HeldRecord::create(self.folder, display).map_err(|error| no_record(self.folder, &error))?;
+        match self.guardian {
+            Some(program) => guardian::start(program, record.path()).map_err(|error| no_guardian(&error))?,
+            None => {}
+        }
+        Ok(record)
     }
 }
 
@@ -254,6 +278,13 @@ fn no_record(folder: &Path, error: &io::Error) -> SinkError {
         "{} takes no file that says which keys are held ({error}), by which they come up after a crash: make room there or use \
          `--output uinput`",
         folder.display()
+    );
+    SinkError { message }
+}
+
+fn no_guardian(error: &io::Error) -> SinkError {
+    let message = format!(
+        "the process does not start that lets go of keys if this one is killed ({error}): use `--output uinput`"
     );
     SinkError { message }
 }

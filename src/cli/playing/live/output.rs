@@ -6,11 +6,16 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use super::playing::tell_of_waiting;
-use super::{left_keys, runtime};
+use super::{guardian, left_keys, runtime};
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{both_print, say};
 use tactpad::bridge::sink::uinput::{self, UinputSink};
-use tactpad::bridge::sink::{Sink, SinkError, log::LogSink, null::NullSink, x11::X11Sink};
+use tactpad::bridge::sink::{
+    Sink, SinkError,
+    log::LogSink,
+    null::NullSink,
+    x11::{HeldRecords, X11Sink},
+};
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 
 /// Where events are to go.
@@ -99,7 +104,9 @@ fn open_x11() -> Result<Box<dyn Sink>, Failure> {
     if let Err(Failure::Failed(why)) = &records {
         say(format_args!("keys that are held stay down if this bridge is killed: {why}"));
     }
-    let sink = X11Sink::open(None, records.ok().as_deref());
+    let records = records.ok();
+    let records = records.as_deref().map(|folder| HeldRecords { folder, guardian: guardian::program() });
+    let sink = X11Sink::open(None, records);
     Ok(Box::new(sink.map_err(|error| Failure::Unusable(error.message))?))
 }
 

@@ -81,6 +81,11 @@ impl HeldRecord {
         Err(io::Error::other("there are too many records of bridges"))
     }
 
+    /// Its file.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Writes down what is down: a line of one length, in one write.
     ///
     /// # Errors

@@ -91,17 +91,18 @@ impl Conventions {
     /// By the table's readings.
     pub fn of(table: &Table, pad: &SimulatedPad<'_>) -> Self {
         let agreement = |rows_late| Agreement::of(table, pad, rows_late);
-        let Some(as_written) = agreement(0) else { return Self::none() };
-        let stuck = |do_agree| StuckLabel::of(&as_written.all, do_agree);
-        if as_written.holds() {
-            let found = as_written.conventions(pad);
-            let stuck = if found.are_meant_so() { stuck(true) } else { Vec::new() };
+        let as_written = agreement(0);
+        if let Some(agreement) = as_written.as_ref().filter(|it| it.holds()) {
+            let found = agreement.conventions(pad);
+            let stuck = if found.are_meant_so() { StuckLabel::of(&agreement.all, true) } else { Vec::new() };
             return Self { stuck, ..found };
         }
         let shifts = (1..=SHIFT_MAX).flat_map(|rows| [rows, -rows]);
-        let found = shifts.filter_map(agreement).find(Agreement::holds);
-        let none = || Self { stuck: stuck(false), ..Self::none() };
-        found.map_or_else(none, |found| found.conventions(pad))
+        if let Some(found) = shifts.filter_map(agreement).find(Agreement::holds) {
+            return found.conventions(pad);
+        }
+        let stuck = as_written.map(|it| StuckLabel::of(&it.all, false)).unwrap_or_default();
+        Self { stuck, ..Self::none() }
     }
 
     /// The table in the pad's frame, mm, N and µV.

@@ -2,7 +2,7 @@
 
 use super::mapping::WrittenContact;
 use crate::diagnosis::data::target::LABELS;
-use tactpad_numeric::statistics::{deviation, median};
+use tactpad_numeric::statistics::median;
 
 /// Fewest contacts in a row with one label …
 const CONTACTS_MIN: usize = 8;
@@ -41,7 +41,10 @@ impl StuckLabel {
         let decoded = |it: &WrittenContact| it.decoded.numbers()[column];
         let force_n = median(contacts.iter().map(|it| it.decoded.resultant_n()))?;
         let least = |share: f64| if column < 2 { PLACE_MM } else { share * force_n };
-        let scatter = |run: &&[WrittenContact]| deviation(&run.iter().map(decoded).collect::<Vec<_>>());
+        let scatter = |run: &&[WrittenContact]| {
+            let middle = median(run.iter().map(decoded)).unwrap_or_default();
+            OF_MEDIAN * median(run.iter().map(|it| (decoded(it) - middle).abs())).unwrap_or_default()
+        };
         let runs = contacts.chunk_by(|one, next| label(one) == label(next));
         let (still, others): (Vec<_>, Vec<_>) =
             runs.partition(|run| run.len() >= CONTACTS_MIN && scatter(run) > least(FORCE_SHARE));
@@ -63,12 +66,12 @@ mod tests {
     use super::*;
     use tactpad_core::tables::measured::Label;
 
-    /// Contacts with forces of 1 to 3 N, as the readings tell them to 10 %; those of `stuck` are written as the one before.
+    /// Contacts with forces of 1 to 3 N, as the readings tell them to 2 %; those of `stuck` are written as the one before.
     fn contacts(stuck: std::ops::Range<usize>) -> Vec<WrittenContact> {
         let force = |at: usize| 1.0 + (at * 7 % 20) as f64 / 10.0;
         let contact = |row: usize| {
             let fz_n = force(if stuck.contains(&row) { stuck.start } else { row });
-            let off = if row.is_multiple_of(2) { 1.1 } else { 0.9 };
+            let off = if row.is_multiple_of(2) { 1.02 } else { 0.98 };
             WrittenContact {
                 row,
                 decoded: DecodedContact {

@@ -101,9 +101,8 @@ impl HeldRecords<'_> {
     fn begun(self, display: &str) -> Result<HeldRecord, SinkError> {
         let record =
             HeldRecord::create(self.folder, display).map_err(|error| no_record(self.folder, &error))?;
-        match self.guardian {
-            Some(program) => guardian::start(program, record.path()).map_err(|error| no_guardian(&error))?,
-            None => {}
+        if let Some(program) = self.guardian {
+            guardian::start(program, record.path()).map_err(|error| no_guardian(&error))?;
         }
         Ok(record)
     }

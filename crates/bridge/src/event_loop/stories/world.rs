@@ -237,11 +237,15 @@ impl World {
             }
             return Ok(());
         }
+        // Nobody keeps what a port says that is not open.
+        let is_open = self.play.bridge.connection.pad().is_some();
         if self.frozen_until.is_some() {
-            self.play.buffer(bytes);
+            if is_open {
+                self.play.buffer(bytes);
+            }
             return Ok(());
         }
-        if self.play.bridge.connection.pad().is_some() && is_sound {
+        if is_open && is_sound {
             self.hear();
         }
         self.play.send_to(bytes);
@@ -513,7 +517,9 @@ impl World {
         let Some(kept) = self.kept.take().filter(|kept| !kept.is_empty()) else { return Ok(()) };
         self.judge.causes.note(self.play.now, Cause::Late);
         if self.frozen_until.is_some() {
-            kept.chunks(64).for_each(|bytes| self.play.buffer(bytes));
+            if self.play.bridge.connection.pad().is_some() {
+                kept.chunks(64).for_each(|bytes| self.play.buffer(bytes));
+            }
             return Ok(());
         }
         if self.play.bridge.connection.pad().is_some() {

@@ -422,18 +422,13 @@ impl Look {
             Some(LineFinding::Clock { shown_us, passed_us })
         } else if is_slow {
             Some(LineFinding::Rate { samples_per_s: 1e6 / mean_us })
-        } else if self.lost >= LOSS_FRAMES_MIN && percent >= LOSS_PERCENT_MIN {
-            Some(LineFinding::Loss { percent })
+        } else if let Some(channel) = still.filter(|_| lively >= LIVELY_MIN) {
+            // It keeps all from being pressed, which few lost frames do not.
+            let counts = self.last.nine_counts().and_then(|counts| counts.get(channel)).copied();
+            Some(LineFinding::ChannelStands { channel, counts: counts.unwrap_or_default() })
         } else {
-            still.filter(|_| lively >= LIVELY_MIN).map(|channel| LineFinding::ChannelStands {
-                channel,
-                counts: self
-                    .last
-                    .nine_counts()
-                    .and_then(|counts| counts.get(channel))
-                    .copied()
-                    .unwrap_or_default(),
-            })
+            (self.lost >= LOSS_FRAMES_MIN && percent >= LOSS_PERCENT_MIN)
+                .then_some(LineFinding::Loss { percent })
         }
     }
 }
@@ -554,6 +549,22 @@ mod tests {
             Sample { sequence: since, ..sample }
         };
         assert_eq!(found(2_700, 1, again), None);
+    }
+
+    #[test]
+    fn a_channel_that_stands_is_found_on_a_line_that_loses_frames_in_every_other_look() {
+        let mut check = LineCheck::new();
+        for ms in 0..4_600 {
+            let mut sample = sound(ms);
+            sample.counts[4] = 1_234;
+            let lost = if ms % 1_800 == 100 { 20 } else { 0 };
+            check.sample(
+                HostInstant::default().plus_us(1_000 * u64::from(ms)),
+                &sample.into(),
+                Arrival { lost, breaks: false, delay_us: Some(0) },
+            );
+        }
+        assert!(matches!(check.finding(), Some(LineFinding::ChannelStands { channel: 4, .. })));
     }
 
     #[test]

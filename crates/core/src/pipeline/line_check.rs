@@ -29,7 +29,7 @@ const EVEN: f32 = 3.0;
 /// A clock counts microseconds if it shows between half and twice the time that has passed.
 const CLOCK_OFF: u64 = 2;
 
-/// Bytes that waited for a host that was busy arrive at once: so much more time may be shown than has passed.
+/// Bytes that waited for a host that was busy arrive at once: so much more time may be shown in one look than has passed.
 const BURST_US: u64 = 1_000_000;
 
 /// A smaller share of frames that do not arrive, in percent, is not worth a word; nor are fewer frames in a look.
@@ -174,6 +174,21 @@ impl LineFinding {
         }
     }
 
+    fn is_like(&self, other: &Self) -> bool {
+        discriminant(self) == discriminant(other)
+    }
+
+    /// Whether `next`, which the look after this one's found, is the same thing. A number of few bits begins again at the same one; a pad
+    /// that began anew twice does not.
+    fn is_seen_again_as(&self, next: &Self) -> bool {
+        match (self, next) {
+            (Self::SequenceWraps { largest: before }, Self::SequenceWraps { largest }) => {
+                before.abs_diff(*largest) <= largest / 8
+            }
+            _ => self.is_like(next),
+        }
+    }
+
     /// Whether one look is enough: most samples show it.
     const fn is_certain(&self) -> bool {
         matches!(
@@ -229,6 +244,8 @@ struct Look {
     sequence_largest: u32,
     /// Samples at which the pad's clock did not go on.
     clock_breaks: u32,
+    /// What the pad's clock showed at them, µs.
+    broken_us: u64,
     /// The last of the samples that go on from one another, and what they show.
     taken: Option<Reading>,
     clock: Option<ShownTime>,
@@ -265,7 +282,7 @@ impl LineCheck {
         }
         look.sample(now, reading);
         look.lost = look.lost.saturating_add(arrival.lost);
-        look.clock_breaks += u32::from(arrival.breaks);
+        look.breaks(reading, arrival.breaks);
         if let Some(delay_us) = arrival.delay_us {
             look.take(reading);
             let last_us = reading.time_us;
@@ -282,13 +299,17 @@ impl LineCheck {
 
     fn close(&mut self) {
         let look = self.look.take();
-        let found = look.as_ref().and_then(Look::found);
+        let found = look.as_ref().and_then(|look| look.found(0));
+        let is_certain = found.as_ref().is_some_and(LineFinding::is_certain)
+            && look.as_ref().and_then(|look| look.found(BURST_US)) == found;
         let is_again = match (&self.candidate, &found) {
             (_, None) => false,
-            (Some(before), Some(now)) if discriminant(before) == discriminant(now) => true,
-            (_, Some(now)) => now.is_certain(),
+            (Some(before), Some(now)) => before.is_seen_again_as(now) || is_certain,
+            (None, Some(_)) => is_certain,
         };
-        self.clean = if found.is_some() { 0 } else { self.clean.saturating_add(1) };
+        // Another thing that is seen once does not keep the one that was found.
+        let is_seen = matches!((&self.finding, &found), (Some(before), Some(now)) if before.is_like(now));
+        self.clean = if is_seen { 0 } else { self.clean.saturating_add(1) };
         let largest = look.map_or(0, |look| look.sequence_largest);
         // A number of 16 bits begins again once a minute.
         let may_wrap_again =
@@ -316,6 +337,7 @@ impl Look {
             sequence_falls: 0,
             sequence_largest: 0,
             clock_breaks: 0,
+            broken_us: 0,
             taken: None,
             clock: None,
             lost: 0,
@@ -339,6 +361,14 @@ impl Look {
         (self.heard, self.last) = (now, *reading);
     }
 
+    /// Takes whether the pad's clock breaks off at this sample.
+    fn breaks(&mut self, reading: &Reading, is_break: bool) {
+        self.clock_breaks += u32::from(is_break);
+        if let Some(clock) = self.clock.filter(|_| is_break) {
+            self.broken_us = self.broken_us.wrapping_add(reading.time_us.wrapping_sub(clock.last_us));
+        }
+    }
+
     /// Takes a sample that goes on from the last one, or begins anew.
     fn take(&mut self, reading: &Reading) {
         let last = self.taken.replace(*reading);
@@ -352,8 +382,8 @@ impl Look {
         (is_full && reading.sequence == 0 && falls(&self.last, reading)).then_some(largest)
     }
 
-    /// The gravest that it shows.
-    fn found(&self) -> Option<LineFinding> {
+    /// The gravest that it shows, where what came may have waited for so long, µs.
+    fn found(&self, waited_us: u64) -> Option<LineFinding> {
         if self.samples < SAMPLES_MIN {
             return None;
         }
@@ -362,16 +392,23 @@ impl Look {
         // An old frame says nothing of the clock, but where most seem to be old it is the clock.
         let all =
             ShownTime { from_us: self.first.time_us, last_us: self.last.time_us, delay_us: 0, samples: 0 };
-        let shown = self.clock.filter(|clock| most(clock.samples)).unwrap_or(all);
+        let heard = self.clock.filter(|clock| most(clock.samples));
+        let (is_clock_heard, shown) = (heard.is_some(), heard.unwrap_or(all));
         let shown_us = shown.last_us.wrapping_sub(shown.from_us);
-        let burst_us = BURST_US.saturating_add(shown.delay_us);
-        // A clock that jumped once was set anew.
-        let is_clock_off = (self.clock_breaks == 0 || most(self.clock_breaks))
-            && (shown_us.saturating_mul(CLOCK_OFF) < passed_us
-                || shown_us > (CLOCK_OFF * passed_us).saturating_add(burst_us));
+        let late_us = shown.delay_us.saturating_add(waited_us);
+        let is_too_fast = |shown_us: u64| shown_us > (CLOCK_OFF * passed_us).saturating_add(late_us);
+        // A clock that jumped once was set anew, and by how much says nothing; what it shows beside the jump may be too much still.
+        let is_set_anew = self.clock_breaks > 0 && !most(self.clock_breaks);
+        let is_clock_off = if is_set_anew {
+            is_clock_heard && is_too_fast(shown_us.wrapping_sub(self.broken_us))
+        } else {
+            shown_us.saturating_mul(CLOCK_OFF) < passed_us || is_too_fast(shown_us)
+        };
         // What is lost was sent.
         let mean_us = passed_us as f32 / (self.lost + self.samples - 1) as f32;
-        let is_slow = 1e6 / mean_us < SAMPLES_PER_S_MIN && (self.widest_us as f32) < EVEN * mean_us;
+        let is_even = (self.widest_us as f32) < EVEN * mean_us;
+        // How much is lost before a clock that is set anew nobody knows.
+        let is_slow = 1e6 / mean_us < SAMPLES_PER_S_MIN && is_even && !is_set_anew;
         let percent = 100.0 * self.lost as f32 / (self.lost + self.samples) as f32;
         let still = self.has_changed.iter().position(|has_changed| !has_changed);
         let lively = self.has_changed.iter().filter(|has_changed| **has_changed).count();
@@ -385,18 +422,13 @@ impl Look {
             Some(LineFinding::Clock { shown_us, passed_us })
         } else if is_slow {
             Some(LineFinding::Rate { samples_per_s: 1e6 / mean_us })
-        } else if self.lost >= LOSS_FRAMES_MIN && percent >= LOSS_PERCENT_MIN {
-            Some(LineFinding::Loss { percent })
+        } else if let Some(channel) = still.filter(|_| lively >= LIVELY_MIN) {
+            // It keeps all from being pressed, which few lost frames do not.
+            let counts = self.last.nine_counts().and_then(|counts| counts.get(channel)).copied();
+            Some(LineFinding::ChannelStands { channel, counts: counts.unwrap_or_default() })
         } else {
-            still.filter(|_| lively >= LIVELY_MIN).map(|channel| LineFinding::ChannelStands {
-                channel,
-                counts: self
-                    .last
-                    .nine_counts()
-                    .and_then(|counts| counts.get(channel))
-                    .copied()
-                    .unwrap_or_default(),
-            })
+            (self.lost >= LOSS_FRAMES_MIN && percent >= LOSS_PERCENT_MIN)
+                .then_some(LineFinding::Loss { percent })
         }
     }
 }
@@ -457,6 +489,8 @@ mod tests {
         assert!(matches!(timed(1), Some(Clock { .. })), "milliseconds");
         assert!(matches!(timed(1_000_000), Some(Clock { .. })), "nanoseconds");
         assert!(matches!(timed(10_000), Some(Clock { .. })), "ten times too fast");
+        let too_fast = found(2_000, 1, |sample, _| Sample { time_us: 3 * sample.time_us, ..sample });
+        assert!(matches!(too_fast, Some(Clock { .. })), "three times too fast");
         let flagged = |sample, _| Sample { status: Status::OK.with_restarted(), ..sample };
         assert_eq!(found(1_000, 1, flagged), Some(RestartFlagStays));
         let constant = |sample, _| Sample { sequence: 7, ..sample };
@@ -506,6 +540,49 @@ mod tests {
             };
             assert_eq!(found(4_000, 1, restarted), None, "{at}");
         }
+    }
+
+    #[test]
+    fn a_pad_that_begins_anew_twice_is_no_number_that_begins_again() {
+        let again = |sample: Sample, number: u32| {
+            let since = number - [0, 700, 1_200].into_iter().rfind(|begun| *begun <= number).unwrap_or(0);
+            Sample { sequence: since, ..sample }
+        };
+        assert_eq!(found(2_700, 1, again), None);
+    }
+
+    #[test]
+    fn a_channel_that_stands_is_found_on_a_line_that_loses_frames_in_every_other_look() {
+        let mut check = LineCheck::new();
+        for ms in 0..4_600 {
+            let mut sample = sound(ms);
+            sample.counts[4] = 1_234;
+            let lost = if ms % 1_800 == 100 { 20 } else { 0 };
+            check.sample(
+                HostInstant::default().plus_us(1_000 * u64::from(ms)),
+                &sample.into(),
+                Arrival { lost, breaks: false, delay_us: Some(0) },
+            );
+        }
+        assert!(matches!(check.finding(), Some(LineFinding::ChannelStands { channel: 4, .. })));
+    }
+
+    #[test]
+    fn a_channel_that_stood_is_taken_back_though_frames_are_lost_now_and_then() {
+        let mut check = LineCheck::new();
+        for ms in 0..10_000 {
+            let mut sample = sound(ms);
+            if ms < 2_000 {
+                sample.counts[4] = 1_234;
+            }
+            let lost = if ms >= 2_000 && ms % 1_800 == 0 { 20 } else { 0 };
+            check.sample(
+                HostInstant::default().plus_us(1_000 * u64::from(ms)),
+                &sample.into(),
+                Arrival { lost, breaks: false, delay_us: Some(0) },
+            );
+        }
+        assert_eq!(check.finding(), None);
     }
 
     #[test]

@@ -330,7 +330,9 @@ impl Pipeline {
             // It may tell other numbers of itself now.
             self.identity = None;
         }
-        self.interrupt(fault.into());
+        // While the zero is measured, a clock that jumps may be a pad that began anew, whose number is near by chance.
+        let may_be_anew = fault == Fault::TimeJump && self.phase == Phase::Taring;
+        self.interrupt(if may_be_anew { Cause::Retared } else { fault.into() });
     }
 
     fn handle_identity(&mut self, identity: &Identity) {

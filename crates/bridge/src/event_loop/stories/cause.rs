@@ -124,9 +124,12 @@ impl Causes {
         self.within(now, us).next().is_none()
     }
 
-    /// Whether a cause within the last `us` makes this state right.
+    /// Whether a cause makes this state right that was there within the last `us`, or whose aftermath lasts still.
     pub(super) fn explain(&self, now: HostInstant, us: u64, state: State) -> bool {
-        self.within(now, us).any(|cause| cause.explains(state))
+        ALL.into_iter().any(|cause| {
+            let lasts_us = us.max(cause.aftermath_us());
+            cause.explains(state) && self.0[cause as usize].is_some_and(|at| now.us_since(at) <= lasts_us)
+        })
     }
 
     /// Whether a cause within the last `us` makes this finding right.

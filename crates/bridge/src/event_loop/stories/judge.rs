@@ -65,6 +65,8 @@ pub(super) struct Judge {
     kept_since: Option<HostInstant>,
     /// A press that has to count by then.
     promise: Option<HostInstant>,
+    /// The number after which a smaller one came, and when the pad had not counted past it.
+    wrapped: Option<(u32, HostInstant)>,
     /// How many messages were read, and when each was told.
     told: Vec<HostInstant>,
     /// All that went out, as one number, and the same with its times.
@@ -175,15 +177,27 @@ impl Judge {
             self.unheard = now;
         }
         let is_heard = now.us_since(self.unheard) > TAKEN_BACK_US;
-        if let Some(finding) =
-            finding.filter(|finding| is_heard && !self.causes.make_true(now, TAKEN_BACK_US, finding))
-        {
+        let untrue = finding.filter(|finding| !self.is_true(play, finding));
+        if let Some(finding) = untrue.filter(|_| is_heard) {
             return broken("what is found is so", format!("{finding}; {}", self.words(play)));
         }
         if state != State::Playing && self.kept_since.is_some_and(|since| now.us_since(since) > NAMED_US) {
             self.is_named(play, state, finding)?;
         }
         Ok(())
+    }
+
+    /// Whether this finding about the stream is so. Of a number that began again, where that was so, it is believed that it does so at the same
+    /// one again, until it has counted past it: a number of 16 bits begins again once a minute.
+    fn is_true(&mut self, play: &Play, finding: &LineFinding) -> bool {
+        let is_true = self.causes.make_true(play.now, TAKEN_BACK_US, finding);
+        let LineFinding::SequenceWraps { largest } = finding else { return is_true };
+        let was_true = self.wrapped.filter(|(number, _)| number == largest);
+        if is_true || was_true.is_some() && play.sequence <= *largest {
+            self.wrapped = Some((*largest, play.now));
+            return true;
+        }
+        was_true.is_some_and(|(_, at)| play.now.us_since(at) <= TAKEN_BACK_US)
     }
 
     /// What has kept the pad from playing for three seconds has its word, in the status and on the console.

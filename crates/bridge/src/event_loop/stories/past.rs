@@ -150,3 +150,66 @@ fn a_zero_under_a_finger_with_a_channel_that_was_off_is_found_out() {
         (2_762, Mend),
     ]);
 }
+
+#[test]
+fn a_number_that_begins_again_is_believed_to_until_it_has_counted_past_it() {
+    let first = Restart { time_us: 18_446_744_073_707_708_753, is_flagged: true, offset: -170_785, text: 3 };
+    let second =
+        Restart { time_us: 18_446_744_073_709_348_847, is_flagged: false, offset: -233_440, text: 2 };
+    holds(&[(0, Mend), (0, first), (1_275, second), (0, Rate(100)), (0, Mend)]);
+}
+
+#[test]
+fn a_pad_that_begins_anew_twice_is_not_accused_of_a_number_that_begins_again() {
+    let first = Restart { time_us: 8_943_279_490_491_222_804, is_flagged: true, offset: 328_118, text: 1 };
+    let second =
+        Restart { time_us: 18_446_744_073_708_191_687, is_flagged: false, offset: -314_067, text: 3 };
+    let slept = Sleep { s: 60, is_powered: true };
+    holds(&[(0, Mend), (1_435, first), (10, slept), (508, second), (0, Mend)]);
+}
+
+#[test]
+fn a_channel_that_answers_again_is_told_of_no_more_though_frames_are_lost() {
+    holds(&[
+        (0, Rate(250)),
+        (380, PLUG_IN),
+        (76, Off(6, Saturated)),
+        (2_551, Event::Cure),
+        (388, DamagePermille(25)),
+        (614, Rate(200)),
+        (1_341, Mend),
+    ]);
+}
+
+#[test]
+fn samples_that_are_lost_while_the_clock_jumps_were_sent() {
+    holds(&[
+        (0, Rate(100)),
+        (0, PLUG_IN),
+        (100, Ask(Wish::Weigh { g: 50 })),
+        (0, Touch(RIGHT)),
+        (0, Mend),
+        (0, DamagePermille(300)),
+        (2_770, Pace(20_000)),
+        (0, Lift),
+        (1_000, Mend),
+    ]);
+}
+
+#[test]
+fn a_clock_that_is_three_times_too_fast_is_named() {
+    holds(&[(0, Rate(100)), (0, Mend), (0, Ask(Wish::Tare)), (0, Pace(3_000)), (18_679, Mend)]);
+}
+
+#[test]
+fn a_clock_that_is_too_fast_is_named_though_frames_are_lost() {
+    let anew = Restart { time_us: 18_446_744_073_707_900_445, is_flagged: false, offset: -69_372, text: 1 };
+    let begun = [(0, Rate(500)), (0, PLUG_IN), (0, anew), (0, Event::Lose(70)), (0, Pace(20_000))];
+    holds(&[&begun[..], &[(0, DamagePermille(25)), (28_316, Mend)]].concat());
+}
+
+#[test]
+fn a_pad_that_begins_anew_while_the_zero_is_measured_is_not_loaded() {
+    let anew = Restart { time_us: 4_292_648_044, is_flagged: false, offset: -286_536, text: 2 };
+    holds(&[(0, Rate(100)), (0, PLUG_IN), (10, anew), (0, Rate(4_000)), (368, Mend)]);
+}

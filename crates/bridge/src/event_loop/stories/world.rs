@@ -1,5 +1,8 @@
 //! The world of a story: a pad, its line, who plays and who looks on, and the machine, around the real loop in virtual time.
 
+mod pad;
+mod player;
+
 use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
 use firmware_proto::identity::{Identity, SerialNumber};
@@ -237,11 +240,15 @@ impl World {
             }
             return Ok(());
         }
+        // Nobody keeps what a port says that is not open.
+        let is_open = self.play.bridge.connection.pad().is_some();
         if self.frozen_until.is_some() {
-            self.play.buffer(bytes);
+            if is_open {
+                self.play.buffer(bytes);
+            }
             return Ok(());
         }
-        if self.play.bridge.connection.pad().is_some() && is_sound {
+        if is_open && is_sound {
             self.hear();
         }
         self.play.send_to(bytes);
@@ -369,281 +376,6 @@ impl World {
             }
             Event::Mend => return self.mend(),
             event => return self.happen_to_pad(event),
-        }
-        Ok(())
-    }
-
-    fn touch(&mut self, contact: Contact) {
-        let presses_anew = self.contact == AWAY && contact == RIGHT;
-        let was_touched = std::mem::replace(&mut self.contact, contact).fz_n > 0.0;
-        let is_touched = contact.fz_n > 0.0;
-        self.is_zero_old &= is_touched;
-        let begins_early = !was_touched && !self.judge.causes.have_passed(self.play.now);
-        self.is_zero_under = is_touched && (self.is_zero_under || begins_early);
-        self.judge.excuse();
-        if presses_anew && self.frozen_until.is_none() {
-            self.judge.press(self.play.now);
-        }
-    }
-
-    fn happen_to_pad(&mut self, event: Event) -> Result<(), Broken> {
-        let play = &mut self.play;
-        match event {
-            Event::PlugIn { is_anew } if !self.is_plugged => {
-                self.is_plugged = true;
-                self.judge.causes.note(play.now, Cause::Anew);
-                play.plug_in();
-                if is_anew {
-                    (play.time_us, play.sequence, play.status) = (0, 0, Status::OK.with_restarted());
-                }
-            }
-            Event::PullOut if self.is_plugged => {
-                self.is_plugged = false;
-                self.judge.causes.note(play.now, Cause::Gone);
-                play.unplug();
-                self.kept = self.kept.take().map(|_| Vec::new());
-                if self.frozen_until.is_none() {
-                    self.read()?;
-                }
-            }
-            Event::Port(state) => {
-                self.port = state;
-                *play.plug.refusal.lock().unwrap() = match state {
-                    PortState::Free => None,
-                    PortState::Denied => Some(PadError::Denied("no".into())),
-                    PortState::Unusable => Some(PadError::Unusable("no".into())),
-                };
-            }
-            Event::Restart { time_us, is_flagged, offset, text } => {
-                self.judge.causes.note(play.now, Cause::Anew);
-                (play.sequence, play.offset) = (0, [offset; 9]);
-                play.status = if is_flagged { Status::OK.with_restarted() } else { Status::OK };
-                self.set_clock(time_us);
-                self.send_if_plugged(BOOT_TEXTS[text].as_bytes())?;
-            }
-            Event::Identify(pad) => self.identify(pad)?,
-            Event::Rate(rate_hz) => self.rate_hz = rate_hz,
-            Event::Stall(is_stalled) => self.is_stalled = is_stalled,
-            Event::Keep(true) => drop(self.kept.get_or_insert_default()),
-            Event::Keep(false) => self.hand_on()?,
-            Event::Lose(frames) => play.sequence = play.sequence.wrapping_add(frames),
-            Event::Damage(frames) => self.damage = frames,
-            Event::LossPermille(permille) => self.loss_permille = permille,
-            Event::DamagePermille(permille) => self.damage_permille = permille,
-            Event::Rubbish(seed) => {
-                let mut draw = Draw(SplitMix64::named(seed, "rubbish"));
-                let bytes: Vec<u8> = (0..=draw.below(100)).map(|_| draw.below(256) as u8).collect();
-                self.send_if_plugged(&bytes)?;
-            }
-            Event::Repeat { age, frames } => self.repeat(age, frames)?,
-            Event::ClockJump(time_us) => self.set_clock(time_us),
-            Event::ClockBits(bits) => {
-                self.clock_bits = bits;
-                self.set_clock(self.play.time_us);
-            }
-            Event::Pace(us_per_ms) => play.us_per_ms = u64::from(us_per_ms),
-            Event::Off(channel, off) => {
-                self.cure();
-                return self.happen_to_pad(Event::OffToo(channel, off));
-            }
-            Event::OffToo(channel, off) => {
-                self.was_off[channel] = true;
-                let reads = play.sent.back().map_or(0, |sent| sent.counts[channel]);
-                self.off[channel] = Some((off, reads));
-                self.wire();
-            }
-            Event::Cure => self.cure(),
-            Event::Sleep { s, is_powered } => self.sleep(s, is_powered)?,
-            _ => return Ok(()),
-        }
-        self.note_moment();
-        if matches!(event, Event::Lose(_)) {
-            self.judge.causes.note(self.play.now, Cause::Loss);
-        }
-        Ok(())
-    }
-
-    fn send_if_plugged(&mut self, bytes: &[u8]) -> Result<(), Broken> {
-        if self.is_plugged && !bytes.is_empty() { self.send(bytes, false) } else { Ok(()) }
-    }
-
-    fn cure(&mut self) {
-        self.is_zero_old |= self.off.iter().any(Option::is_some) && self.contact.fz_n > 0.0;
-        self.off = [None; 9];
-        self.wire();
-    }
-
-    /// Lays the pad's wires as they are now.
-    fn wire(&mut self) {
-        let off = self.off;
-        self.play.wiring = Box::new(move |number, counts| {
-            for (count, off) in counts.iter_mut().zip(off) {
-                *count = match off {
-                    Some((Off::Saturated, _)) => (1 << 23) - 1,
-                    Some((Off::Stuck, reads)) => reads,
-                    Some((Off::Rail { mv, noise_uv }, _)) => {
-                        let noise = (number.wrapping_mul(2_654_435_761) >> 16) as i32;
-                        100_000 * mv + noise % (200 * noise_uv + 1) - 100 * noise_uv
-                    }
-                    Some((Off::Drift { .. }, _)) | None => *count,
-                };
-            }
-        });
-    }
-
-    fn identify(&mut self, pad: usize) -> Result<(), Broken> {
-        let identity = Identity {
-            serial_number: SerialNumber::from_ascii(PADS[pad]).unwrap(),
-            channels: 9,
-            count_bits: 24,
-            rate_hz: self.rate_hz as u16,
-            picovolts_per_count: 10_000,
-        };
-        self.send_message(&Message::Identity(identity), false)
-    }
-
-    fn send_message(&mut self, message: &Message, is_sound: bool) -> Result<(), Broken> {
-        let mut frame = [0; ENCODED_MAX];
-        let length = encode_message(message, &mut frame);
-        if self.is_plugged { self.send(&frame[..length], is_sound) } else { Ok(()) }
-    }
-
-    /// The hub hands on what it has kept.
-    fn hand_on(&mut self) -> Result<(), Broken> {
-        let Some(kept) = self.kept.take().filter(|kept| !kept.is_empty()) else { return Ok(()) };
-        self.judge.causes.note(self.play.now, Cause::Late);
-        if self.frozen_until.is_some() {
-            kept.chunks(64).for_each(|bytes| self.play.buffer(bytes));
-            return Ok(());
-        }
-        if self.play.bridge.connection.pad().is_some() {
-            self.judge.heard = Some(self.play.now);
-            // A finger may have been there meanwhile.
-            self.judge.touch_heard = Some(self.play.now);
-        }
-        self.play.send_to(&kept);
-        self.read()
-    }
-
-    /// Frames come again: those that were sent, or where that is too long ago such as they may have been.
-    fn repeat(&mut self, age: u32, frames: u32) -> Result<(), Broken> {
-        for back in 0..frames.min(age) {
-            let number = self.play.sequence.wrapping_sub(age).wrapping_add(back);
-            let sent = self.play.sent.iter().rev().find(|sent| sent.sequence == number).copied();
-            let older = self.play.sent.front().copied();
-            let Some(sample) = sent.or(older) else { return Ok(()) };
-            self.send_message(&Message::Sample(sample), false)?;
-        }
-        Ok(())
-    }
-
-    /// The machine sleeps. Its clock does not go on; the pad's does, if it has power, and what it sends is lost.
-    fn sleep(&mut self, s: u32, is_powered: bool) -> Result<(), Broken> {
-        if is_powered {
-            self.pad_time_passes(1_000_000 * u64::from(s));
-            self.play.sequence = self.play.sequence.wrapping_add(s * self.rate_hz);
-            self.judge.causes.note(self.play.now, Cause::Loss);
-            return Ok(());
-        }
-        if self.is_plugged {
-            self.happen_to_pad(Event::PullOut)?;
-            self.happen_to_pad(Event::PlugIn { is_anew: true })?;
-        }
-        Ok(())
-    }
-
-    fn ask(&mut self, wish: Wish) -> Result<(), Broken> {
-        let request = match wish {
-            Wish::Pause => Request::Pause,
-            Wish::Resume => Request::Resume,
-            Wish::TogglePause => Request::TogglePause,
-            Wish::Tare => Request::Retare,
-            Wish::Panic => Request::ReleaseAll,
-            Wish::Profile { number, .. } => Request::Profile(Some(PROFILES[number].into())),
-            Wish::NextProfile { .. } => Request::NextProfile,
-            Wish::Reload { .. } => Request::Profile(None),
-            Wish::Edit(number) => Request::UpdateProfile(Box::new(ProfileUpdate {
-                read: profile(PROFILES[number]),
-                reason: None,
-                request_count: 0,
-            })),
-            Wish::Break => Request::UpdateProfile(Box::new(ProfileUpdate {
-                read: Err("line 3 is wrong".into()),
-                reason: None,
-                request_count: 0,
-            })),
-            Wish::Preview(number) => Request::Preview(Box::new(profile(PROFILES[number]).unwrap())),
-            Wish::Weigh { g } => Request::Weigh(Weight::of_g(g.into()).unwrap()),
-            Wish::Status => Request::Status,
-        };
-        match wish {
-            Wish::Pause => self.is_paused = true,
-            Wish::Resume => self.is_paused = false,
-            Wish::TogglePause => self.is_paused = !self.is_paused,
-            Wish::Profile { read_ms, .. } | Wish::NextProfile { read_ms } | Wish::Reload { read_ms } => {
-                self.read_at.push(self.play.now.plus_us(1_000 * u64::from(read_ms)));
-            }
-            _ => {}
-        }
-        match wish {
-            Wish::Tare => self.note_moment(),
-            Wish::Pause | Wish::Resume | Wish::TogglePause | Wish::Panic | Wish::Weigh { .. } => {
-                self.note_moment();
-            }
-            _ => {}
-        }
-        self.play.bridge.requests.sender().unwrap().send(request).unwrap();
-        self.is_asked = true;
-        if self.frozen_until.is_some() { Ok(()) } else { self.read() }
-    }
-
-    /// Puts everything right. Then the pad plays, and the first press counts.
-    fn mend(&mut self) -> Result<(), Broken> {
-        if let Some(until) = self.frozen_until {
-            self.pass(until.us_since(self.play.now) + 1)?;
-        }
-        for event in [
-            Event::Lift,
-            Event::Cure,
-            Event::Damage(0),
-            Event::LossPermille(0),
-            Event::DamagePermille(0),
-            Event::Pace(1_000),
-            Event::Stall(false),
-            Event::Keep(false),
-            Event::ReaderStall(false),
-            Event::Port(PortState::Free),
-            Event::PlugIn { is_anew: true },
-            Event::Ask(Wish::Resume),
-        ] {
-            self.happen(event)?;
-        }
-        self.note_causes();
-        self.settle()?;
-        self.touch(RIGHT);
-        self.pass(150_000)?;
-        self.touch(AWAY);
-        self.pass(250_000)?;
-        if self.play.bridge.driver.pipeline.held().next().is_some() {
-            return broken("nothing stays down", self.judge.words(&self.play));
-        }
-        let shown = self.page.as_mut().map_or(Ok(()), |page| page.is_like(&self.play.bridge.driver.pipeline));
-        shown.or_else(|what| broken("the same calls give the same events", what))
-    }
-
-    /// Waits until the pad has to play.
-    fn settle(&mut self) -> Result<(), Broken> {
-        // A weighing ends by itself after some time.
-        let mut left_ms = 25_000;
-        while !self.judge.causes.have_passed(self.play.now) {
-            if left_ms == 0 {
-                return broken("all comes to its end", self.judge.words(&self.play));
-            }
-            left_ms -= 10;
-            self.pass(10_000)?;
-        }
-        if self.play.bridge.driver.pipeline.line_finding().is_some() {
-            self.pass(TAKEN_BACK_US)?;
         }
         Ok(())
     }

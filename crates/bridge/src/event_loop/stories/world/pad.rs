@@ -1,0 +1,173 @@
+//! What happens to the pad and its line.
+
+use super::*;
+
+impl World {
+    pub(super) fn happen_to_pad(&mut self, event: Event) -> Result<(), Broken> {
+        let play = &mut self.play;
+        match event {
+            Event::PlugIn { is_anew } if !self.is_plugged => {
+                self.is_plugged = true;
+                self.judge.causes.note(play.now, Cause::Anew);
+                play.plug_in();
+                if is_anew {
+                    (play.time_us, play.sequence, play.status) = (0, 0, Status::OK.with_restarted());
+                }
+            }
+            Event::PullOut if self.is_plugged => {
+                self.is_plugged = false;
+                self.judge.causes.note(play.now, Cause::Gone);
+                play.unplug();
+                self.kept = self.kept.take().map(|_| Vec::new());
+                if self.frozen_until.is_none() {
+                    self.read()?;
+                }
+            }
+            Event::Port(state) => {
+                self.port = state;
+                *play.plug.refusal.lock().unwrap() = match state {
+                    PortState::Free => None,
+                    PortState::Denied => Some(PadError::Denied("no".into())),
+                    PortState::Unusable => Some(PadError::Unusable("no".into())),
+                };
+            }
+            Event::Restart { time_us, is_flagged, offset, text } => {
+                self.judge.causes.note(play.now, Cause::Anew);
+                (play.sequence, play.offset) = (0, [offset; 9]);
+                play.status = if is_flagged { Status::OK.with_restarted() } else { Status::OK };
+                self.set_clock(time_us);
+                self.send_if_plugged(BOOT_TEXTS[text].as_bytes())?;
+            }
+            Event::Identify(pad) => self.identify(pad)?,
+            Event::Rate(rate_hz) => self.rate_hz = rate_hz,
+            Event::Stall(is_stalled) => self.is_stalled = is_stalled,
+            Event::Keep(true) => drop(self.kept.get_or_insert_default()),
+            Event::Keep(false) => self.hand_on()?,
+            Event::Lose(frames) => play.sequence = play.sequence.wrapping_add(frames),
+            Event::Damage(frames) => self.damage = frames,
+            Event::LossPermille(permille) => self.loss_permille = permille,
+            Event::DamagePermille(permille) => self.damage_permille = permille,
+            Event::Rubbish(seed) => {
+                let mut draw = Draw(SplitMix64::named(seed, "rubbish"));
+                let bytes: Vec<u8> = (0..=draw.below(100)).map(|_| draw.below(256) as u8).collect();
+                self.send_if_plugged(&bytes)?;
+            }
+            Event::Repeat { age, frames } => self.repeat(age, frames)?,
+            Event::ClockJump(time_us) => self.set_clock(time_us),
+            Event::ClockBits(bits) => {
+                self.clock_bits = bits;
+                self.set_clock(self.play.time_us);
+            }
+            Event::Pace(us_per_ms) => play.us_per_ms = u64::from(us_per_ms),
+            Event::Off(channel, off) => {
+                self.cure();
+                return self.happen_to_pad(Event::OffToo(channel, off));
+            }
+            Event::OffToo(channel, off) => {
+                self.was_off[channel] = true;
+                let reads = play.sent.back().map_or(0, |sent| sent.counts[channel]);
+                self.off[channel] = Some((off, reads));
+                self.wire();
+            }
+            Event::Cure => self.cure(),
+            Event::Sleep { s, is_powered } => self.sleep(s, is_powered)?,
+            _ => return Ok(()),
+        }
+        self.note_moment();
+        if matches!(event, Event::Lose(_)) {
+            self.judge.causes.note(self.play.now, Cause::Loss);
+        }
+        Ok(())
+    }
+
+    fn send_if_plugged(&mut self, bytes: &[u8]) -> Result<(), Broken> {
+        if self.is_plugged && !bytes.is_empty() { self.send(bytes, false) } else { Ok(()) }
+    }
+
+    pub(super) fn cure(&mut self) {
+        self.is_zero_old |= self.off.iter().any(Option::is_some) && self.contact.fz_n > 0.0;
+        self.off = [None; 9];
+        self.wire();
+    }
+
+    /// Lays the pad's wires as they are now.
+    fn wire(&mut self) {
+        let off = self.off;
+        self.play.wiring = Box::new(move |number, counts| {
+            for (count, off) in counts.iter_mut().zip(off) {
+                *count = match off {
+                    Some((Off::Saturated, _)) => (1 << 23) - 1,
+                    Some((Off::Stuck, reads)) => reads,
+                    Some((Off::Rail { mv, noise_uv }, _)) => {
+                        let noise = (number.wrapping_mul(2_654_435_761) >> 16) as i32;
+                        100_000 * mv + noise % (200 * noise_uv + 1) - 100 * noise_uv
+                    }
+                    Some((Off::Drift { .. }, _)) | None => *count,
+                };
+            }
+        });
+    }
+
+    fn identify(&mut self, pad: usize) -> Result<(), Broken> {
+        let identity = Identity {
+            serial_number: SerialNumber::from_ascii(PADS[pad]).unwrap(),
+            channels: 9,
+            count_bits: 24,
+            rate_hz: self.rate_hz as u16,
+            picovolts_per_count: 10_000,
+        };
+        self.send_message(&Message::Identity(identity), false)
+    }
+
+    pub(super) fn send_message(&mut self, message: &Message, is_sound: bool) -> Result<(), Broken> {
+        let mut frame = [0; ENCODED_MAX];
+        let length = encode_message(message, &mut frame);
+        if self.is_plugged { self.send(&frame[..length], is_sound) } else { Ok(()) }
+    }
+
+    /// The hub hands on what it has kept.
+    fn hand_on(&mut self) -> Result<(), Broken> {
+        let Some(kept) = self.kept.take().filter(|kept| !kept.is_empty()) else { return Ok(()) };
+        self.judge.causes.note(self.play.now, Cause::Late);
+        if self.frozen_until.is_some() {
+            if self.play.bridge.connection.pad().is_some() {
+                kept.chunks(64).for_each(|bytes| self.play.buffer(bytes));
+            }
+            return Ok(());
+        }
+        if self.play.bridge.connection.pad().is_some() {
+            self.judge.heard = Some(self.play.now);
+            // A finger may have been there meanwhile.
+            self.judge.touch_heard = Some(self.play.now);
+        }
+        self.play.send_to(&kept);
+        self.read()
+    }
+
+    /// Frames come again: those that were sent, or where that is too long ago such as they may have been.
+    fn repeat(&mut self, age: u32, frames: u32) -> Result<(), Broken> {
+        for back in 0..frames.min(age) {
+            let number = self.play.sequence.wrapping_sub(age).wrapping_add(back);
+            let sent = self.play.sent.iter().rev().find(|sent| sent.sequence == number).copied();
+            let older = self.play.sent.front().copied();
+            let Some(sample) = sent.or(older) else { return Ok(()) };
+            self.send_message(&Message::Sample(sample), false)?;
+        }
+        Ok(())
+    }
+
+    /// The machine sleeps. Its clock does not go on; the pad's does, if it has power, and what it sends is lost.
+    fn sleep(&mut self, s: u32, is_powered: bool) -> Result<(), Broken> {
+        if is_powered {
+            self.pad_time_passes(1_000_000 * u64::from(s));
+            self.play.sequence = self.play.sequence.wrapping_add(s * self.rate_hz);
+            self.judge.causes.note(self.play.now, Cause::Loss);
+            return Ok(());
+        }
+        if self.is_plugged {
+            self.happen_to_pad(Event::PullOut)?;
+            self.happen_to_pad(Event::PlugIn { is_anew: true })?;
+        }
+        Ok(())
+    }
+}

@@ -59,7 +59,7 @@ fn verbs(group: &Command) -> String {
         let about = verb.get_about().map(ToString::to_string).unwrap_or_default();
         wrapped::hanging(&format!("  {:11}  ", verb.get_name()), &about) + "\n"
     };
-    group.get_subcommands().filter(|verb| !verb.is_hide_set()).map(verb).collect()
+    group.get_subcommands().map(verb).collect()
 }
 
 /// The words of the command line, or those that are meant where there are none; `None` if that is done already.
@@ -74,7 +74,12 @@ fn words() -> Result<Option<Vec<OsString>>, Failure> {
 
 /// Runs the program with the process's arguments.
 pub(super) fn run() -> ExitCode {
-    let outcome = words().and_then(|words| words.map_or(Ok(()), |words| obey(&parsed(words).verb)));
+    #[cfg(target_os = "linux")]
+    let guarded = playing::live::guardian::outcome(env::args_os());
+    #[cfg(not(target_os = "linux"))]
+    let guarded = None;
+    let asked = || words().and_then(|words| words.map_or(Ok(()), |words| obey(&parsed(words).verb)));
+    let outcome = guarded.unwrap_or_else(asked);
     let (code, message) = match outcome {
         Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,
         Err(Failure::Failed(message)) => (1, message),
@@ -108,9 +113,7 @@ mod tests {
     /// The command and all below it, each under its whole name.
     fn all(command: &Command, before: &str, into: &mut Vec<(String, Command)>) {
         let name = format!("{before}{}", command.get_name());
-        for below in
-            command.get_subcommands().filter(|below| below.get_name() != "help" && !below.is_hide_set())
-        {
+        for below in command.get_subcommands().filter(|below| below.get_name() != "help") {
             all(below, &format!("{name} "), into);
         }
         into.push((name, command.clone()));

@@ -49,10 +49,6 @@ pub(super) enum Verb {
     /// Measure from pad bytes readable to event written, and where the time goes.
     #[cfg(target_os = "linux")]
     Latency(live::latency::Arguments),
-    /// Let go of keys of an X server if the bridge is killed.
-    #[cfg(target_os = "linux")]
-    #[command(name = live::guardian::VERB, hide = true)]
-    GuardKeys(live::guardian::Arguments),
     /// Print a shell's completions of verbs and options.
     Completions(completions::Arguments),
 }
@@ -81,8 +77,6 @@ pub(super) fn run(verb: &Verb, program: impl FnOnce() -> Command) -> Result<(), 
         Verb::Replay(arguments) => replay::run(arguments),
         #[cfg(target_os = "linux")]
         Verb::Latency(arguments) => live::latency::run(arguments),
-        #[cfg(target_os = "linux")]
-        Verb::GuardKeys(arguments) => live::guardian::run(arguments),
         Verb::Completions(arguments) => completions::run(arguments, &mut program()),
     }
 }

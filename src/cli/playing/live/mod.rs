@@ -14,7 +14,7 @@ mod displays;
 pub(super) mod doctor;
 mod files;
 mod follower;
-pub(super) mod guardian;
+pub(crate) mod guardian;
 mod keeping;
 mod kept_play;
 #[cfg(feature = "tray")]

@@ -100,14 +100,16 @@ fn the_same_story_goes_the_same_way() {
     }
 }
 
-/// Goes on where it was broken off: `TACTPAD_STORIES` says how many, `TACTPAD_STORIES_FROM` from which seed.
+/// Goes on where this very program was broken off: `TACTPAD_STORIES` says how many, `TACTPAD_STORIES_FROM` from which seed.
 #[test]
 fn campaign() {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     let Some(count) = number("TACTPAD_STORIES") else { return };
     let from = number("TACTPAD_STORIES_FROM").unwrap_or(0);
     let program = std::env::current_exe().unwrap();
-    let place = program.parent().unwrap().join(format!("stories-from-{from}"));
+    let built = std::fs::metadata(&program).and_then(|it| it.modified()).unwrap();
+    let built_s = built.duration_since(std::time::UNIX_EPOCH).unwrap().as_secs();
+    let place = program.parent().unwrap().join(format!("stories-from-{from}-{built_s}"));
     let done = std::fs::read_to_string(&place).ok().and_then(|text| text.trim().parse().ok()).unwrap_or(0);
     let threads = std::thread::available_parallelism().map_or(1, |threads| threads.get() as u64);
     for begin in (done..count).step_by(BLOCK) {

@@ -205,15 +205,17 @@ pub struct Arrival {
     pub lost: u32,
     /// Whether the pad's clock does not go on from the sample before.
     pub breaks: bool,
+    /// Whether the pad began anew with it.
+    pub begins: bool,
     /// By how much it came late, µs; `None` of one that came again, or is of another time.
     pub delay_us: Option<u64>,
 }
 
-/// What the pad's clock showed.
+/// What the pad's clock showed. Where it falls, it shows nothing: it has few bits, or was set anew.
 #[derive(Clone, Copy, Debug)]
 struct ShownTime {
-    from_us: u64,
     last_us: u64,
+    us: u64,
     /// By how much the first of it came late: that may be made up for.
     delay_us: u64,
     samples: u32,
@@ -282,13 +284,18 @@ impl LineCheck {
         }
         look.sample(now, reading);
         look.lost = look.lost.saturating_add(arrival.lost);
-        look.breaks(reading, arrival.breaks);
+        let last_us = reading.time_us;
+        let before_us = look.clock.filter(|_| !arrival.begins).map_or(last_us, |clock| clock.last_us);
+        let step_us = last_us.saturating_sub(before_us);
+        if arrival.breaks {
+            look.clock_breaks += 1;
+            look.broken_us = look.broken_us.saturating_add(step_us);
+        }
         if let Some(delay_us) = arrival.delay_us {
             look.take(reading);
-            let last_us = reading.time_us;
-            let begun = ShownTime { from_us: last_us, last_us, delay_us, samples: 0 };
-            let clock = look.clock.unwrap_or(begun);
-            look.clock = Some(ShownTime { last_us, samples: clock.samples + 1, ..clock });
+            let clock = look.clock.unwrap_or(ShownTime { last_us, us: 0, delay_us, samples: 0 });
+            let us = clock.us.saturating_add(step_us);
+            look.clock = Some(ShownTime { last_us, us, samples: clock.samples + 1, ..clock });
         }
     }
 
@@ -361,14 +368,6 @@ impl Look {
         (self.heard, self.last) = (now, *reading);
     }
 
-    /// Takes whether the pad's clock breaks off at this sample.
-    fn breaks(&mut self, reading: &Reading, is_break: bool) {
-        self.clock_breaks += u32::from(is_break);
-        if let Some(clock) = self.clock.filter(|_| is_break) {
-            self.broken_us = self.broken_us.wrapping_add(reading.time_us.wrapping_sub(clock.last_us));
-        }
-    }
-
     /// Takes a sample that goes on from the last one, or begins anew.
     fn take(&mut self, reading: &Reading) {
         let last = self.taken.replace(*reading);
@@ -390,17 +389,18 @@ impl Look {
         let most = |count: u32| 2 * count > self.samples;
         let passed_us = self.heard.us_since(self.begun);
         // An old frame says nothing of the clock, but where most seem to be old it is the clock.
-        let all =
-            ShownTime { from_us: self.first.time_us, last_us: self.last.time_us, delay_us: 0, samples: 0 };
+        let last_us = self.last.time_us;
+        let us = last_us.saturating_sub(self.first.time_us);
+        let all = ShownTime { last_us, us, delay_us: 0, samples: 0 };
         let heard = self.clock.filter(|clock| most(clock.samples));
         let (is_clock_heard, shown) = (heard.is_some(), heard.unwrap_or(all));
-        let shown_us = shown.last_us.wrapping_sub(shown.from_us);
+        let shown_us = shown.us;
         let late_us = shown.delay_us.saturating_add(waited_us);
         let is_too_fast = |shown_us: u64| shown_us > (CLOCK_OFF * passed_us).saturating_add(late_us);
         // A clock that jumped once was set anew, and by how much says nothing; what it shows beside the jump may be too much still.
         let is_set_anew = self.clock_breaks > 0 && !most(self.clock_breaks);
         let is_clock_off = if is_set_anew {
-            is_clock_heard && is_too_fast(shown_us.wrapping_sub(self.broken_us))
+            is_clock_heard && is_too_fast(shown_us.saturating_sub(self.broken_us))
         } else {
             shown_us.saturating_mul(CLOCK_OFF) < passed_us || is_too_fast(shown_us)
         };
@@ -467,7 +467,7 @@ mod tests {
             let sample = make(Sample { sequence: number as u32, ..sound(at_ms) }, number as u32);
             let now = HostInstant::default().plus_us(1_000 * u64::from(at_ms));
             let is_break = breaks(&sample, number as u32);
-            let arrival = Arrival { lost: 0, breaks: is_break, delay_us: Some(0) };
+            let arrival = Arrival { lost: 0, breaks: is_break, begins: false, delay_us: Some(0) };
             check.sample(now, &sample.into(), arrival);
         }
         check.finding().copied()
@@ -561,7 +561,7 @@ mod tests {
             check.sample(
                 HostInstant::default().plus_us(1_000 * u64::from(ms)),
                 &sample.into(),
-                Arrival { lost, breaks: false, delay_us: Some(0) },
+                Arrival { lost, breaks: false, begins: false, delay_us: Some(0) },
             );
         }
         assert!(matches!(check.finding(), Some(LineFinding::ChannelStands { channel: 4, .. })));
@@ -579,7 +579,7 @@ mod tests {
             check.sample(
                 HostInstant::default().plus_us(1_000 * u64::from(ms)),
                 &sample.into(),
-                Arrival { lost, breaks: false, delay_us: Some(0) },
+                Arrival { lost, breaks: false, begins: false, delay_us: Some(0) },
             );
         }
         assert_eq!(check.finding(), None);
@@ -592,7 +592,7 @@ mod tests {
             check.sample(
                 HostInstant::default().plus_us(1_000 * u64::from(ms)),
                 &sound(ms).into(),
-                Arrival { lost, breaks: false, delay_us: Some(0) },
+                Arrival { lost, breaks: false, begins: false, delay_us: Some(0) },
             );
         };
         (0..3_000).for_each(|ms| at(&mut check, ms, u32::from(ms % 40 == 0)));

@@ -37,28 +37,31 @@ pub(super) enum Cause {
     Late,
     /// It begins anew.
     Anew,
+    /// It began anew without a word, and went on by number and clock from where it was: it looks as if a finger had come.
+    Unnoticed,
     /// Something was over in a moment: a zero that somebody wants anew, an old frame.
     Moment,
 }
 
 use Cause::{
     Anew, Channel, Channels, Clock, Denied, Frozen, Gone, Late, Loss, Moment, Paused, Silent, Touched, Under,
-    Unusable, Weighing,
+    Unnoticed, Unusable, Weighing,
 };
 
-const ALL: [Cause; 16] = [
+const ALL: [Cause; 17] = [
     Gone, Denied, Unusable, Silent, Paused, Touched, Under, Weighing, Channel, Channels, Loss, Clock, Frozen,
-    Late, Anew, Moment,
+    Late, Anew, Unnoticed, Moment,
 ];
 
 impl Cause {
     /// So long after it is over the pad plays, µs: half a second. A port is looked for four times a second, and where the clock's pace is in
-    /// doubt the pad is looked at for a second first. Several channels that are off look like several fingers, which play for ten seconds.
+    /// doubt the pad is looked at for a second first. Several channels that are off look like several fingers, which play for ten
+    /// seconds, and so may other offsets.
     const fn aftermath_us(self) -> u64 {
         match self {
             Gone | Denied | Unusable => 750_000,
             Clock | Late => 1_500_000,
-            Channels => 10_500_000,
+            Channels | Unnoticed => 10_500_000,
             _ => 500_000,
         }
     }
@@ -74,7 +77,7 @@ impl Cause {
             Touched => matches!(state, State::Loaded | State::Taring),
             Under => matches!(state, State::Loaded | State::Taring | State::Faulty | State::Doubtful),
             Weighing => matches!(state, State::Weighing),
-            Channel | Channels => {
+            Channel | Channels | Unnoticed => {
                 matches!(state, State::Faulty | State::Doubtful | State::Taring | State::Loaded)
             }
             Loss | Clock => matches!(state, State::Doubtful | State::Silent),
@@ -107,6 +110,17 @@ impl Causes {
         self.0[cause as usize] = Some(now);
     }
 
+    /// If it keeps the pad from playing still, it does so as if it were there at `now`.
+    pub(super) fn renew(&mut self, now: HostInstant, cause: Cause) {
+        if !self.has_passed(now, cause) {
+            self.note(now, cause);
+        }
+    }
+
+    fn has_passed(&self, now: HostInstant, cause: Cause) -> bool {
+        self.0[cause as usize].is_none_or(|at| now.us_since(at) > cause.aftermath_us())
+    }
+
     /// Those that were there within the last `us`.
     pub(super) fn within(&self, now: HostInstant, us: u64) -> impl Iterator<Item = Cause> {
         ALL.into_iter().filter(move |cause| self.0[*cause as usize].is_some_and(|at| now.us_since(at) <= us))
@@ -114,9 +128,7 @@ impl Causes {
 
     /// Whether a pad has to play: whatever kept it from that is over for long enough.
     pub(super) fn have_passed(&self, now: HostInstant) -> bool {
-        let passed =
-            |cause: Cause| self.0[cause as usize].is_none_or(|at| now.us_since(at) > cause.aftermath_us());
-        ALL.into_iter().all(passed)
+        ALL.into_iter().all(|cause| self.has_passed(now, cause))
     }
 
     /// Whether nothing at all was wrong for `us`.

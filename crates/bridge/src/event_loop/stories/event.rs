@@ -209,13 +209,15 @@ impl Draw {
         let radius_mm = 28.0 * self.0.fraction().sqrt();
         let (sin, cos) = (std::f32::consts::PI * self.0.uniform()).sin_cos();
         let tenths = |value: f32| (10.0 * value).round() / 10.0;
-        let shear = if self.either() { 1.5 } else { 0.0 };
+        let fz_n = tenths(6.0 * self.0.fraction());
+        // Where nothing presses, nothing shears.
+        let shear_n = if self.either() { fz_n.min(1.5) } else { 0.0 };
         Contact {
             x_mm: tenths(radius_mm * cos),
             y_mm: tenths(radius_mm * sin),
-            fx_n: tenths(shear * self.0.uniform()),
-            fy_n: tenths(shear * self.0.uniform()),
-            fz_n: tenths(6.0 * self.0.fraction()),
+            fx_n: tenths(shear_n * self.0.uniform()),
+            fy_n: tenths(shear_n * self.0.uniform()),
+            fz_n,
         }
     }
 

@@ -58,7 +58,7 @@ pub(super) struct Judge {
     down: BTreeMap<(OutputDevice, u16), i32>,
     /// When the bridge read a sound sample last, and one with a finger.
     pub(super) heard: Option<HostInstant>,
-    pub(super) touch_heard: Option<HostInstant>,
+    touch_heard: Option<HostInstant>,
     /// When it had heard none for a while.
     unheard: HostInstant,
     looked: HostInstant,
@@ -87,16 +87,26 @@ impl Judge {
         self.promise = None;
     }
 
-    /// The loop did not come to run until now.
-    pub(super) fn thaw(&mut self, now: HostInstant, frozen_us: u64) {
+    /// The bridge reads a sound sample now.
+    pub(super) fn hear(&mut self, now: HostInstant, is_touched: bool) {
         self.heard = Some(now);
-        // What waited on the line is of the time before.
-        let waited: Vec<Cause> = self.causes.within(now, frozen_us + NAMED_US).collect();
-        waited.into_iter().for_each(|cause| self.causes.note(now, cause));
-        if self.causes.within(now, frozen_us).any(|cause| cause == Cause::Touched) {
+        if is_touched {
             self.touch_heard = Some(now);
         }
+    }
+
+    /// The loop did not come to run until now.
+    pub(super) fn thaw(&mut self, now: HostInstant, frozen_us: u64) {
+        self.wait_is_over(now, frozen_us);
+        let is_touched = self.causes.within(now, frozen_us).any(|cause| cause == Cause::Touched);
+        self.hear(now, is_touched);
         (self.kept_since, self.unheard) = (None, now);
+    }
+
+    /// What waited for so long comes now, and with it whatever was there then.
+    pub(super) fn wait_is_over(&mut self, now: HostInstant, waited_us: u64) {
+        let waited: Vec<Cause> = self.causes.within(now, waited_us + NAMED_US).collect();
+        waited.into_iter().for_each(|cause| self.causes.note(now, cause));
     }
 
     /// Takes what went out by now.

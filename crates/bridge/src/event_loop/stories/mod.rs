@@ -64,18 +64,20 @@ fn told(seed: u64, steps: &[Step], failure: &Failure) -> String {
     )
 }
 
-/// What broke in the first of these stories that did.
-fn first_broken(seeds: impl Iterator<Item = u64>) -> Option<String> {
-    seeds.into_iter().find_map(|seed| {
+/// Those of these stories that broke: the seed, and what is told of it.
+fn broken_ones(seeds: impl Iterator<Item = u64>) -> Vec<(u64, String)> {
+    let failure = |seed| {
         let steps = story(seed);
-        play(seed, &steps, true).err().map(|failure| told(seed, &steps, &failure))
-    })
+        play(seed, &steps, true).err().map(|failure| (seed, told(seed, &steps, &failure)))
+    };
+    seeds.filter_map(failure).collect()
 }
 
 #[test]
 fn whatever_happens_nothing_stays_down_and_a_sound_pad_plays() {
-    let broken = first_broken(0..300);
-    assert!(broken.is_none(), "{}", broken.unwrap_or_default());
+    let broken = broken_ones(0..300);
+    let told: Vec<&str> = broken.iter().map(|(_, told)| told.as_str()).collect();
+    assert!(told.is_empty(), "{}", told.join("\n\n"));
 }
 
 #[test]
@@ -109,21 +111,31 @@ fn campaign() {
     let program = std::env::current_exe().unwrap();
     let built = std::fs::metadata(&program).and_then(|it| it.modified()).unwrap();
     let built_s = built.duration_since(std::time::UNIX_EPOCH).unwrap().as_secs();
+    // How many were played, and the seeds that broke.
     let place = program.parent().unwrap().join(format!("stories-from-{from}-{built_s}"));
-    let done = std::fs::read_to_string(&place).ok().and_then(|text| text.trim().parse().ok()).unwrap_or(0);
+    let text = std::fs::read_to_string(&place).unwrap_or_default();
+    let mut numbers = text.split_whitespace().map(|word| word.parse::<u64>().unwrap());
+    let done = numbers.next().unwrap_or(0);
+    let mut seeds: Vec<u64> = numbers.collect();
     let threads = std::thread::available_parallelism().map_or(1, |threads| threads.get() as u64);
     for begin in (done..count).step_by(BLOCK) {
         let end = count.min(begin + BLOCK as u64);
-        let broken = std::thread::scope(|scope| {
+        let broken: Vec<(u64, String)> = std::thread::scope(|scope| {
             let part =
-                |part| first_broken((from + begin..from + end).filter(move |seed| seed % threads == part));
+                |part| broken_ones((from + begin..from + end).filter(move |seed| seed % threads == part));
             let parts: Vec<_> = (0..threads).map(|number| scope.spawn(move || part(number))).collect();
-            parts.into_iter().find_map(|part| part.join().unwrap())
+            parts.into_iter().flat_map(|part| part.join().unwrap()).collect()
         });
-        assert!(broken.is_none(), "{}", broken.unwrap_or_default());
-        std::fs::write(&place, end.to_string()).unwrap();
-        println!("{end} of {count} stories hold");
+        for (seed, told) in broken {
+            println!("{told}\n");
+            seeds.push(seed);
+        }
+        let words: Vec<String> =
+            std::iter::once(end).chain(seeds.iter().copied()).map(|it| it.to_string()).collect();
+        std::fs::write(&place, words.join(" ")).unwrap();
+        println!("{end} of {count} stories are played, {} broke", seeds.len());
     }
+    assert!(seeds.is_empty(), "these stories broke: {seeds:?}");
 }
 
 /// So many stories are played before it is noted how far the campaign is.

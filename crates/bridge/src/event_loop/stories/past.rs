@@ -219,3 +219,43 @@ fn a_pad_that_begins_anew_while_the_zero_is_measured_is_not_loaded() {
     let anew = Restart { time_us: 4_292_648_044, is_flagged: false, offset: -286_536, text: 2 };
     holds(&[(0, Rate(100)), (0, PLUG_IN), (10, anew), (0, Rate(4_000)), (368, Mend)]);
 }
+
+#[test]
+fn frames_that_come_late_over_a_silence_are_let_go_of_in_time() {
+    holds(&[
+        (0, Rate(100)),
+        (0, Mend),
+        (0, Damage(70)),
+        (0, Touch(RIGHT)),
+        (676, Repeat { age: 64, frames: 3 }),
+    ]);
+}
+
+#[test]
+fn a_pad_that_had_run_for_a_moment_and_begins_anew_while_the_machine_stands_still_is_found_out() {
+    let slept = Sleep { s: 60, is_powered: false };
+    let anew = Restart { time_us: 17_179_899_831_365_364_586, is_flagged: true, offset: 190_107, text: 2 };
+    let begun = [(0, Mend), (0, slept), (467, Freeze(300)), (75, anew), (0, Freeze(3_000))];
+    holds(&[&begun[..], &[(0, ClockJump(0)), (0, Mend)]].concat());
+}
+
+#[test]
+fn a_clock_that_falls_shows_nothing() {
+    let anew = Restart { time_us: 18_446_744_073_708_855_205, is_flagged: true, offset: -2_759, text: 0 };
+    let begun = [(0, Event::ClockBits(32)), (0, Mend), (0, Pace(1)), (0, anew), (550, LossPermille(300))];
+    holds(&[&begun[..], &[(182, Lift), (53, Mend)]].concat());
+}
+
+#[test]
+fn a_channel_that_was_off_does_not_hide_that_the_zero_is_a_load() {
+    let off = Off(2, Rail { mv: -18, noise_uv: 1_631 });
+    let begun =
+        [(0, Rate(125)), (0, off), (0, Touch(RIGHT)), (0, PlugIn { is_anew: false }), (0, Keep(true))];
+    holds(&[&begun[..], &[(296, Lift), (0, Rate(100)), (0, Mend)]].concat());
+}
+
+#[test]
+fn a_pad_that_begins_anew_as_soon_as_it_had_begun_is_not_loaded() {
+    let anew = Restart { time_us: 0, is_flagged: false, offset: 249_870, text: 1 };
+    holds(&[(0, PLUG_IN), (1, anew), (676, Sleep { s: 3_600, is_powered: false })]);
+}

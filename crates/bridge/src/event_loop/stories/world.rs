@@ -3,11 +3,13 @@
 mod pad;
 mod player;
 
+use std::collections::VecDeque;
+
 use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
 use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::encode_message;
-use firmware_proto::sample::Status;
+use firmware_proto::sample::{Sample, Status};
 use tactpad_numeric::random::SplitMix64;
 
 use super::super::virtual_time::{ASLEEP, Play, profile};
@@ -25,6 +27,9 @@ const DENSE_US: u64 = 2_000_000;
 
 /// A hub keeps so many bytes.
 const KEPT_MAX: usize = 64 << 10;
+
+/// The bridge knows so many of the newest samples again.
+const KNOWN: usize = 64;
 
 /// The loop wakes so often in one moment at most.
 const WAKES_MAX: u32 = 1_000;
@@ -52,6 +57,13 @@ pub(super) struct World {
     is_plugged: bool,
     is_stalled: bool,
     kept: Option<Vec<u8>>,
+    /// When the hub began to keep it.
+    kept_from: HostInstant,
+    /// The newest samples that the bridge has read, or that wait for it, and whether a finger was there at the last of them.
+    read: VecDeque<Sample>,
+    is_touch_read: bool,
+    /// The pad began anew, did not say so, and so many more samples may seem to go on from those before.
+    seeming: u32,
     damage: u32,
     loss_permille: u32,
     damage_permille: u32,
@@ -97,6 +109,10 @@ impl World {
             is_plugged: false,
             is_stalled: false,
             kept: None,
+            kept_from: HostInstant::default(),
+            read: VecDeque::with_capacity(KNOWN),
+            is_touch_read: false,
+            seeming: 0,
             damage: 0,
             loss_permille: 0,
             damage_permille: 0,
@@ -198,6 +214,8 @@ impl World {
     fn set_clock(&mut self, time_us: u64) {
         let shown_us = if self.clock_bits < 64 { time_us & ((1 << self.clock_bits) - 1) } else { time_us };
         if shown_us < self.play.time_us {
+            // A clock in doubt is looked at from here on.
+            self.judge.causes.renew(self.play.now, Cause::Clock);
             self.note_moment();
         }
         self.play.time_us = shown_us;
@@ -227,13 +245,13 @@ impl World {
             self.damage = self.damage.saturating_sub(1);
             let place = self.chance.below(length as u64 - 1) as usize;
             frame[place] ^= 1 + self.chance.below(255) as u8;
-            return self.send(&frame[..length], false);
+            return self.send(&frame[..length], None);
         }
-        self.send(&frame[..length], true)
+        self.send(&frame[..length], Some(&sample))
     }
 
     /// Bytes leave the pad. They may be a sound sample.
-    fn send(&mut self, bytes: &[u8], is_sound: bool) -> Result<(), Broken> {
+    fn send(&mut self, bytes: &[u8], sound: Option<&Sample>) -> Result<(), Broken> {
         if let Some(kept) = &mut self.kept {
             if kept.len() + bytes.len() <= KEPT_MAX {
                 kept.extend_from_slice(bytes);
@@ -242,25 +260,41 @@ impl World {
         }
         // Nobody keeps what a port says that is not open.
         let is_open = self.play.bridge.connection.pad().is_some();
+        if let Some(sample) = sound.filter(|_| is_open) {
+            self.hear(sample);
+        }
         if self.frozen_until.is_some() {
             if is_open {
                 self.play.buffer(bytes);
             }
             return Ok(());
         }
-        if is_open && is_sound {
-            self.hear();
-        }
         self.play.send_to(bytes);
         self.read()
     }
 
-    /// The bridge is about to read a sound sample.
-    fn hear(&mut self) {
-        self.judge.heard = Some(self.play.now);
-        if self.contact.fz_n > 0.0 {
-            self.judge.touch_heard = Some(self.play.now);
+    /// The bridge reads this sound sample now, or as soon as it comes to run.
+    fn hear(&mut self, sample: &Sample) {
+        if self.seeming > 0 && self.seems_to_go_on(sample) {
+            self.judge.causes.note(self.play.now, Cause::Unnoticed);
         }
+        self.seeming = self.seeming.saturating_sub(1);
+        if self.read.len() == KNOWN {
+            self.read.pop_front();
+        }
+        self.read.push_back(*sample);
+        self.is_touch_read = self.contact.fz_n > 0.0;
+        if self.frozen_until.is_none() {
+            self.judge.hear(self.play.now, self.is_touch_read);
+        }
+    }
+
+    /// Whether this sample goes on by number and clock from the one that was read last, as far as one who waited for it can know.
+    fn seems_to_go_on(&self, sample: &Sample) -> bool {
+        let (Some(last), Some(heard)) = (self.read.back(), self.judge.heard) else { return false };
+        let passed_us = self.play.now.us_since(heard);
+        let shown_us = sample.time_us.checked_sub(last.time_us).unwrap_or(u64::MAX);
+        sample.sequence > last.sequence && shown_us.abs_diff(passed_us) <= passed_us / 8 + 100_000
     }
 
     /// The bridge reads all that is there.
@@ -323,6 +357,7 @@ impl World {
         let now = self.play.now;
         let is_open = self.play.bridge.connection.pad().is_some();
         let phase = self.play.bridge.driver.pipeline.phase();
+        let is_silent = self.is_stalled || self.kept.is_some();
         let is_off = self.off.iter().any(Option::is_some) || self.is_zero_old;
         if !is_off && self.judge.causes.have_passed(now) {
             self.was_off = [false; 9];
@@ -332,9 +367,10 @@ impl World {
             (Cause::Gone, !self.is_plugged),
             (Cause::Denied, self.is_plugged && !is_open && self.port == PortState::Denied),
             (Cause::Unusable, self.is_plugged && !is_open && self.port == PortState::Unusable),
-            (Cause::Silent, self.is_stalled || self.kept.is_some()),
+            (Cause::Silent, is_silent),
             (Cause::Paused, self.is_paused),
-            (Cause::Touched, self.contact.fz_n > 0.0),
+            // Nobody knows that a finger was lifted that was there when the pad fell silent.
+            (Cause::Touched, self.contact.fz_n > 0.0 || is_silent && self.is_touch_read),
             (Cause::Under, self.is_zero_under),
             (Cause::Weighing, phase == Phase::Weighing),
             (Cause::Channel, is_off),

@@ -183,6 +183,7 @@ impl Link {
             lost: u32::try_from(health.frames_lost - before.frames_lost).unwrap_or(u32::MAX),
             // Whatever fault is told of it.
             breaks: (health.time_jumps, health.restarts) != (before.time_jumps, before.restarts),
+            begins: health.restarts != before.restarts,
             delay_us: is_next.then_some(delay_us),
         };
         self.check.sample(now, &reading, arrival);
@@ -233,11 +234,16 @@ impl Link {
         LinkEvent::Sample { at: self.clock.last, reading, fault }
     }
 
-    /// How this sample follows what was heard last.
+    /// How this sample follows what was heard last. If it is the next one both of that and of frames that came since, it is of these: a pad
+    /// that began anew as soon as it had begun.
     fn step(&self, now: HostInstant, reading: &Reading) -> SequenceStep {
+        let is_of_other = self.other.is_some_and(|other| other.is_followed_by(reading));
         match &self.run {
             Some(run) if self.is_silent => run.step_over_silence(now, reading),
-            Some(run) => run.step(now, reading),
+            Some(run) => match run.step(now, reading) {
+                SequenceStep::Next if is_of_other => SequenceStep::Apart,
+                step => step,
+            },
             None if self.clock.set && reading.status.restarted() => SequenceStep::Anew,
             None => SequenceStep::Next,
         }

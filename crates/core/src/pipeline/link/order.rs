@@ -13,6 +13,10 @@ const SKIPPED_MAX: u32 = 64;
 /// So many of the newest frames are kept, to tell one that comes again from one of a run that began anew.
 const KEPT: usize = 64;
 
+/// Over a gap the pad's clock shows what has passed, but for one part in so many. A coarser look takes a pad for the same that began anew
+/// when it had run for a moment.
+const PACE_OFF: u64 = 8;
+
 /// A sample with no more delay came without any.
 const DELAY_MAX_US: u64 = 20_000;
 
@@ -138,10 +142,9 @@ impl Run {
     fn goes_on_after_gap(&self, now: HostInstant, next: &Reading) -> bool {
         let (heard, time_us) = self.prompt;
         let passed_us = now.us_since(heard);
-        let is_in_time = next
-            .time_us
-            .checked_sub(time_us)
-            .is_some_and(|shown_us| (passed_us / 2..=2 * passed_us + GAP_MAX_US).contains(&shown_us));
+        let off_us = passed_us / PACE_OFF + GAP_MAX_US;
+        let is_in_time =
+            next.time_us.checked_sub(time_us).is_some_and(|shown_us| shown_us.abs_diff(passed_us) <= off_us);
         let ahead = next.sequence.wrapping_sub(self.last.sequence);
         let missing_us = next.time_us.checked_sub(self.last.time_us);
         is_in_time
@@ -168,6 +171,11 @@ impl OtherRun {
     pub(super) fn with(run: Option<Self>, sample: &Reading) -> Self {
         let frames = run.filter(|run| goes_on_closely(&run.newest, sample)).map_or(0, |run| run.frames);
         Self { newest: *sample, frames: frames + 1 }
+    }
+
+    /// Whether `sample` is the next one of it.
+    pub(super) fn is_followed_by(&self, sample: &Reading) -> bool {
+        sample.sequence.wrapping_sub(self.newest.sequence) == 1 && goes_on_closely(&self.newest, sample)
     }
 
     /// Whether it is long enough to be the pad's own.

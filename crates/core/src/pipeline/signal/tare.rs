@@ -193,15 +193,20 @@ impl Tare {
         self.stillness.push(at, raw_uv)
     }
 
-    /// The channel that reads alone in the blocks up to this one. That is no load, so it is this channel's zero from now on.
+    /// The channel that reads alone in the blocks up to this one. That is no load, so it is this channel's zero from now on. Where the others
+    /// read something beside it, the zero may be a load that it hid, and is measured anew.
     pub fn lone(&mut self, block_uv: &[f64; CHANNELS], rest: &UntouchedOffset) -> Option<usize> {
         let zero_uv = self.zero_uv.as_mut()?;
         let read_uv = std::array::from_fn(|k| block_uv[k] - zero_uv[k] - rest.uv[k]);
         let lone = lone_channel(&read_uv).filter(|channel| read_uv[*channel].abs() > LONE_UV);
         self.lones = if lone.is_some() { self.lones + 1 } else { 0 };
         let channel = lone.filter(|_| self.lones >= LONE_BLOCKS)?;
-        zero_uv[channel] += read_uv[channel];
         self.lones = 0;
+        if (0..CHANNELS).any(|k| k != channel && read_uv[k].abs() > LONE_UV) {
+            (self.zero_uv, self.block_uv, self.floor) = (None, None, None);
+        } else {
+            zero_uv[channel] += read_uv[channel];
+        }
         Some(channel)
     }
 

@@ -1,6 +1,10 @@
 //! What happens to the pad and its line.
 
 use super::*;
+use tactpad_core::pipeline::link::SILENCE_MAX_US;
+
+/// So many of the first samples of a pad that began anew may seem to go on from those before; one of them the text of its boot loader spoils.
+const SEEMING: u32 = 3;
 
 impl World {
     pub(super) fn happen_to_pad(&mut self, event: Event) -> Result<(), Broken> {
@@ -34,6 +38,7 @@ impl World {
             Event::Restart { time_us, is_flagged, offset, text } => {
                 self.judge.causes.note(play.now, Cause::Anew);
                 (play.sequence, play.offset) = (0, [offset; 9]);
+                self.seeming = if is_flagged { 0 } else { SEEMING };
                 play.status = if is_flagged { Status::OK.with_restarted() } else { Status::OK };
                 self.set_clock(time_us);
                 self.send_if_plugged(BOOT_TEXTS[text].as_bytes())?;
@@ -41,7 +46,11 @@ impl World {
             Event::Identify(pad) => self.identify(pad)?,
             Event::Rate(rate_hz) => self.rate_hz = rate_hz,
             Event::Stall(is_stalled) => self.is_stalled = is_stalled,
-            Event::Keep(true) => drop(self.kept.get_or_insert_default()),
+            Event::Keep(true) => {
+                if self.kept.is_none() {
+                    (self.kept, self.kept_from) = (Some(Vec::new()), self.play.now);
+                }
+            }
             Event::Keep(false) => self.hand_on()?,
             Event::Lose(frames) => play.sequence = play.sequence.wrapping_add(frames),
             Event::Damage(frames) => self.damage = frames,
@@ -81,7 +90,7 @@ impl World {
     }
 
     fn send_if_plugged(&mut self, bytes: &[u8]) -> Result<(), Broken> {
-        if self.is_plugged && !bytes.is_empty() { self.send(bytes, false) } else { Ok(()) }
+        if self.is_plugged && !bytes.is_empty() { self.send(bytes, None) } else { Ok(()) }
     }
 
     pub(super) fn cure(&mut self) {
@@ -116,18 +125,19 @@ impl World {
             rate_hz: self.rate_hz as u16,
             picovolts_per_count: 10_000,
         };
-        self.send_message(&Message::Identity(identity), false)
+        self.send_message(&Message::Identity(identity))
     }
 
-    pub(super) fn send_message(&mut self, message: &Message, is_sound: bool) -> Result<(), Broken> {
+    fn send_message(&mut self, message: &Message) -> Result<(), Broken> {
         let mut frame = [0; ENCODED_MAX];
         let length = encode_message(message, &mut frame);
-        if self.is_plugged { self.send(&frame[..length], is_sound) } else { Ok(()) }
+        self.send_if_plugged(&frame[..length])
     }
 
     /// The hub hands on what it has kept.
     fn hand_on(&mut self) -> Result<(), Broken> {
         let Some(kept) = self.kept.take().filter(|kept| !kept.is_empty()) else { return Ok(()) };
+        self.judge.wait_is_over(self.play.now, self.play.now.us_since(self.kept_from));
         self.judge.causes.note(self.play.now, Cause::Late);
         if self.frozen_until.is_some() {
             if self.play.bridge.connection.pad().is_some() {
@@ -136,22 +146,28 @@ impl World {
             return Ok(());
         }
         if self.play.bridge.connection.pad().is_some() {
-            self.judge.heard = Some(self.play.now);
             // A finger may have been there meanwhile.
-            self.judge.touch_heard = Some(self.play.now);
+            self.judge.hear(self.play.now, true);
         }
         self.play.send_to(&kept);
         self.read()
     }
 
-    /// Frames come again: those that were sent, or where that is too long ago such as they may have been.
+    /// Frames come again: those that were sent, or where that is too long ago such as they may have been. Those of a silent pad that the
+    /// bridge has not read are nothing but late.
     fn repeat(&mut self, age: u32, frames: u32) -> Result<(), Broken> {
+        let now = self.play.now;
+        let is_silent = self.judge.heard.is_none_or(|heard| now.us_since(heard) > SILENCE_MAX_US);
         for back in 0..frames.min(age) {
             let number = self.play.sequence.wrapping_sub(age).wrapping_add(back);
             let sent = self.play.sent.iter().rev().find(|sent| sent.sequence == number).copied();
             let older = self.play.sent.front().copied();
             let Some(sample) = sent.or(older) else { return Ok(()) };
-            self.send_message(&Message::Sample(sample), false)?;
+            if is_silent && !self.read.contains(&sample) {
+                self.judge.causes.note(now, Cause::Late);
+                self.judge.hear(now, true);
+            }
+            self.send_message(&Message::Sample(sample))?;
         }
         Ok(())
     }

@@ -259,3 +259,10 @@ fn a_pad_that_begins_anew_as_soon_as_it_had_begun_is_not_loaded() {
     let anew = Restart { time_us: 0, is_flagged: false, offset: 249_870, text: 1 };
     holds(&[(0, PLUG_IN), (1, anew), (676, Sleep { s: 3_600, is_powered: false })]);
 }
+
+#[test]
+fn a_channel_that_stood_does_not_hide_that_the_zero_is_a_load() {
+    let finger = Contact { x_mm: -15.6, y_mm: -15.0, fx_n: 0.0, fy_n: 0.0, fz_n: 2.7 };
+    let begun = [(0, Rate(100)), (0, Off(8, Stuck)), (0, PlugIn { is_anew: false }), (2_288, Touch(RIGHT))];
+    holds(&[&begun[..], &[(0, Touch(finger)), (0, Event::Lose(1_000)), (354, Mend)]].concat());
+}

@@ -226,8 +226,13 @@ impl Tare {
         let is_sound = stands || *touched && *is_touch_believed;
         // By all channels a touch is a load; what the others say against it is asked only then, as on a pad that is not quite as it
         // was calibrated some channel is always the oddest.
-        let load_n = || if *touched { (loads.without_stray_n)(&strain) } else { (loads.plain_n)(&strain) };
-        let is_below = !is_sound && load_n() < -SAME_N;
+        let is_below = |load_n: f32| load_n < -SAME_N;
+        // Where nothing touches, neither: but for what stands still beside a channel that may have stood when the zero was measured.
+        let is_far = strain.uv.iter().any(|uv| f64::from(uv.abs()) > LONE_UV);
+        let is_asked = *touched || is_far && self.stillness.mean_uv().is_some();
+        let is_below = !is_sound
+            && (!*touched && is_below((loads.plain_n)(&strain))
+                || is_asked && is_below((loads.without_stray_n)(&strain)));
         self.pulls = if is_below { self.pulls + 1 } else { 0 };
         self.pulls >= if *touched { PULL_BLOCKS_TOUCHED } else { PULL_BLOCKS }
     }

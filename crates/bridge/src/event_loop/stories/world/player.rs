@@ -49,11 +49,17 @@ impl World {
             }
             _ => {}
         }
+        if matches!(wish, Wish::Weigh { .. }) {
+            // It may be over as soon as it has begun.
+            self.judge.causes.note(self.play.now, Cause::Weighing);
+        }
         match wish {
-            Wish::Tare => self.note_moment(),
-            Wish::Pause | Wish::Resume | Wish::TogglePause | Wish::Panic | Wish::Weigh { .. } => {
-                self.note_moment();
-            }
+            Wish::Tare
+            | Wish::Pause
+            | Wish::Resume
+            | Wish::TogglePause
+            | Wish::Panic
+            | Wish::Weigh { .. } => self.note_moment(),
             _ => {}
         }
         self.play.bridge.requests.sender().unwrap().send(request).unwrap();

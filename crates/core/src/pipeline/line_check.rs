@@ -29,6 +29,9 @@ const EVEN: f32 = 3.0;
 /// A clock counts microseconds if it shows between half and twice the time that has passed.
 const CLOCK_OFF: u64 = 2;
 
+/// A clock that is set anew more often in a look is none.
+const SET_ANEW_MAX: u32 = 8;
+
 /// Bytes that waited for a host that was busy arrive at once: so much more time may be shown in one look than has passed.
 const BURST_US: u64 = 1_000_000;
 
@@ -205,8 +208,6 @@ pub struct Arrival {
     pub lost: u32,
     /// Whether the pad's clock does not go on from the sample before.
     pub breaks: bool,
-    /// Whether the pad began anew with it.
-    pub begins: bool,
     /// By how much it came late, µs; `None` of one that came again, or is of another time.
     pub delay_us: Option<u64>,
 }
@@ -282,10 +283,10 @@ impl LineCheck {
             // At once: what comes of it must not be told first.
             self.finding = Some(LineFinding::SequenceWraps { largest });
         }
-        look.sample(now, reading);
         look.lost = look.lost.saturating_add(arrival.lost);
         let last_us = reading.time_us;
-        let before_us = look.clock.filter(|_| !arrival.begins).map_or(last_us, |clock| clock.last_us);
+        let begins = reading.status.restarted() || reading.sequence < look.last.sequence;
+        let before_us = look.clock.filter(|_| !begins).map_or(last_us, |clock| clock.last_us);
         let step_us = last_us.saturating_sub(before_us);
         if arrival.breaks {
             look.clock_breaks += 1;
@@ -297,6 +298,7 @@ impl LineCheck {
             let us = clock.us.saturating_add(step_us);
             look.clock = Some(ShownTime { last_us, us, samples: clock.samples + 1, ..clock });
         }
+        look.sample(now, reading);
     }
 
     /// Another pad may come.
@@ -397,8 +399,8 @@ impl Look {
         let shown_us = shown.us;
         let late_us = shown.delay_us.saturating_add(waited_us);
         let is_too_fast = |shown_us: u64| shown_us > (CLOCK_OFF * passed_us).saturating_add(late_us);
-        // A clock that jumped once was set anew, and by how much says nothing; what it shows beside the jump may be too much still.
-        let is_set_anew = self.clock_breaks > 0 && !most(self.clock_breaks);
+        // A clock that jumped was set anew, and by how much says nothing; what it shows beside the jump may be too much still.
+        let is_set_anew = (1..=SET_ANEW_MAX).contains(&self.clock_breaks);
         let is_clock_off = if is_set_anew {
             is_clock_heard && is_too_fast(shown_us.saturating_sub(self.broken_us))
         } else {
@@ -467,7 +469,7 @@ mod tests {
             let sample = make(Sample { sequence: number as u32, ..sound(at_ms) }, number as u32);
             let now = HostInstant::default().plus_us(1_000 * u64::from(at_ms));
             let is_break = breaks(&sample, number as u32);
-            let arrival = Arrival { lost: 0, breaks: is_break, begins: false, delay_us: Some(0) };
+            let arrival = Arrival { lost: 0, breaks: is_break, delay_us: Some(0) };
             check.sample(now, &sample.into(), arrival);
         }
         check.finding().copied()
@@ -561,7 +563,7 @@ mod tests {
             check.sample(
                 HostInstant::default().plus_us(1_000 * u64::from(ms)),
                 &sample.into(),
-                Arrival { lost, breaks: false, begins: false, delay_us: Some(0) },
+                Arrival { lost, breaks: false, delay_us: Some(0) },
             );
         }
         assert!(matches!(check.finding(), Some(LineFinding::ChannelStands { channel: 4, .. })));
@@ -579,7 +581,7 @@ mod tests {
             check.sample(
                 HostInstant::default().plus_us(1_000 * u64::from(ms)),
                 &sample.into(),
-                Arrival { lost, breaks: false, begins: false, delay_us: Some(0) },
+                Arrival { lost, breaks: false, delay_us: Some(0) },
             );
         }
         assert_eq!(check.finding(), None);
@@ -592,7 +594,7 @@ mod tests {
             check.sample(
                 HostInstant::default().plus_us(1_000 * u64::from(ms)),
                 &sound(ms).into(),
-                Arrival { lost, breaks: false, begins: false, delay_us: Some(0) },
+                Arrival { lost, breaks: false, delay_us: Some(0) },
             );
         };
         (0..3_000).for_each(|ms| at(&mut check, ms, u32::from(ms % 40 == 0)));

@@ -266,3 +266,9 @@ fn a_channel_that_stood_does_not_hide_that_the_zero_is_a_load() {
     let begun = [(0, Rate(100)), (0, Off(8, Stuck)), (0, PlugIn { is_anew: false }), (2_288, Touch(RIGHT))];
     holds(&[&begun[..], &[(0, Touch(finger)), (0, Event::Lose(1_000)), (354, Mend)]].concat());
 }
+
+#[test]
+fn a_clock_that_is_too_fast_is_named_though_the_pad_seems_to_begin_anew_all_the_time() {
+    let begun = [(0, Rate(200)), (0, PLUG_IN), (10, Touch(RIGHT)), (22, Pace(20_000)), (100, Lift)];
+    holds(&[&begun[..], &[(10, DamagePermille(300)), (27_834, Touch(RIGHT))]].concat());
+}

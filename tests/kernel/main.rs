@@ -16,6 +16,7 @@ mod bridge;
 #[path = "../support/clock.rs"]
 mod clock;
 mod demo;
+mod drawn;
 #[path = "../support/framebuffer.rs"]
 mod framebuffer;
 mod guest;
@@ -262,6 +263,16 @@ fn sigtstp_releases_and_the_device_stays() {
 #[test]
 fn sigkill_leaves_nothing_held() {
     in_guest("sigkill_leaves_nothing_held", neutral::after_sigkill);
+}
+
+#[test]
+fn a_bridge_that_is_ended_at_any_moment_leaves_nothing_held() {
+    in_guest("a_bridge_that_is_ended_at_any_moment_leaves_nothing_held", drawn::kills);
+}
+
+#[test]
+fn a_pad_that_is_pulled_out_at_any_moment_leaves_nothing_held_and_plays_again() {
+    in_guest("a_pad_that_is_pulled_out_at_any_moment_leaves_nothing_held_and_plays_again", drawn::unplugs);
 }
 
 #[test]

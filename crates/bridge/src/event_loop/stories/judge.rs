@@ -284,10 +284,11 @@ const STATES: [State; 11] = [
 ];
 
 /// Words of findings about the stream, and what they are about.
-const FOUND: [(&str, Cause); 4] = [
+const FOUND: [(&str, Cause); 5] = [
     ("the pad's clock went on by", Cause::Clock),
     ("frames are lost or damaged", Cause::Loss),
     ("all the time while others change", Cause::Channel),
+    ("reads what no finger makes it read", Cause::Channel),
     ("comes a smaller one", Cause::Anew),
 ];
 

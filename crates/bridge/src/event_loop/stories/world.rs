@@ -59,9 +59,8 @@ pub(super) struct World {
     kept: Option<Vec<u8>>,
     /// When the hub began to keep it.
     kept_from: HostInstant,
-    /// The newest samples that the bridge has read, or that wait for it, and whether a finger was there at the last of them.
+    /// The newest samples that the bridge has read, or that wait for it.
     read: VecDeque<Sample>,
-    is_touch_read: bool,
     /// The pad began anew, did not say so, and so many more samples may seem to go on from those before.
     seeming: u32,
     damage: u32,
@@ -111,7 +110,6 @@ impl World {
             kept: None,
             kept_from: HostInstant::default(),
             read: VecDeque::with_capacity(KNOWN),
-            is_touch_read: false,
             seeming: 0,
             damage: 0,
             loss_permille: 0,
@@ -283,9 +281,8 @@ impl World {
             self.read.pop_front();
         }
         self.read.push_back(*sample);
-        self.is_touch_read = self.contact.fz_n > 0.0;
         if self.frozen_until.is_none() {
-            self.judge.hear(self.play.now, self.is_touch_read);
+            self.judge.hear(self.play.now, self.contact.fz_n > 0.0);
         }
     }
 
@@ -358,6 +355,10 @@ impl World {
         let is_open = self.play.bridge.connection.pad().is_some();
         let phase = self.play.bridge.driver.pipeline.phase();
         let is_silent = self.is_stalled || self.kept.is_some();
+        if is_silent {
+            // What was there when the pad fell silent nobody sees pass.
+            self.judge.causes.renew_all(now);
+        }
         let is_off = self.off.iter().any(Option::is_some) || self.is_zero_old;
         if !is_off && self.judge.causes.have_passed(now) {
             self.was_off = [false; 9];
@@ -369,8 +370,7 @@ impl World {
             (Cause::Unusable, self.is_plugged && !is_open && self.port == PortState::Unusable),
             (Cause::Silent, is_silent),
             (Cause::Paused, self.is_paused),
-            // Nobody knows that a finger was lifted that was there when the pad fell silent.
-            (Cause::Touched, self.contact.fz_n > 0.0 || is_silent && self.is_touch_read),
+            (Cause::Touched, self.contact.fz_n > 0.0),
             (Cause::Under, self.is_zero_under),
             (Cause::Weighing, phase == Phase::Weighing),
             (Cause::Channel, is_off),

@@ -117,11 +117,6 @@ impl Causes {
         }
     }
 
-    /// The same of all.
-    pub(super) fn renew_all(&mut self, now: HostInstant) {
-        ALL.into_iter().for_each(|cause| self.renew(now, cause));
-    }
-
     fn has_passed(&self, now: HostInstant, cause: Cause) -> bool {
         self.0[cause as usize].is_none_or(|at| now.us_since(at) > cause.aftermath_us())
     }

@@ -272,3 +272,20 @@ fn a_clock_that_is_too_fast_is_named_though_the_pad_seems_to_begin_anew_all_the_
     let begun = [(0, Rate(200)), (0, PLUG_IN), (10, Touch(RIGHT)), (22, Pace(20_000)), (100, Lift)];
     holds(&[&begun[..], &[(10, DamagePermille(300)), (27_834, Touch(RIGHT))]].concat());
 }
+
+#[test]
+fn in_a_silence_nothing_passes() {
+    let finger = Contact { x_mm: 19.8, y_mm: -12.7, fx_n: 0.1, fy_n: -0.2, fz_n: 0.3 };
+    holds(&[(0, PLUG_IN), (0, Touch(finger)), (1_000, Lift), (1, Stall(true)), (3_420, Mend)]);
+}
+
+#[test]
+fn a_pad_that_begins_anew_behind_a_hub_that_keeps_no_more_is_found_out() {
+    let finger = Contact { x_mm: 7.6, y_mm: 13.3, fx_n: 0.0, fy_n: 0.3, fz_n: 1.8 };
+    let first = Restart { time_us: 4_293_862_872, is_flagged: false, offset: -137_913, text: 1 };
+    let second = Restart { time_us: 6_274_937, is_flagged: true, offset: 269_235, text: 1 };
+    let begun = [(184, PlugIn { is_anew: false }), (1_260, Keep(true)), (1_788, first), (935, second)];
+    holds(
+        &[&begun[..], &[(12_969, Touch(finger)), (542, Keep(false)), (1_000, Lift), (2_784, Mend)]].concat(),
+    );
+}

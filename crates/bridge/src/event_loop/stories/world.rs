@@ -57,11 +57,12 @@ pub(super) struct World {
     is_plugged: bool,
     is_stalled: bool,
     kept: Option<Vec<u8>>,
-    /// When the hub began to keep it.
+    /// Since when the hub keeps it, and since when the pad has stalled.
     kept_from: HostInstant,
+    stalled_from: HostInstant,
     /// The newest samples that the bridge has read, or that wait for it.
     read: VecDeque<Sample>,
-    /// The pad began anew, did not say so, and so many more samples may seem to go on from those before.
+    /// The pad began anew, and so many more samples may seem to go on from those before.
     seeming: u32,
     damage: u32,
     loss_permille: u32,
@@ -109,6 +110,7 @@ impl World {
             is_stalled: false,
             kept: None,
             kept_from: HostInstant::default(),
+            stalled_from: HostInstant::default(),
             read: VecDeque::with_capacity(KNOWN),
             seeming: 0,
             damage: 0,
@@ -273,6 +275,9 @@ impl World {
 
     /// The bridge reads this sound sample now, or as soon as it comes to run.
     fn hear(&mut self, sample: &Sample) {
+        if sample.status.restarted() {
+            self.seeming = 0;
+        }
         if self.seeming > 0 && self.seems_to_go_on(sample) {
             self.judge.causes.note(self.play.now, Cause::Unnoticed);
         }
@@ -291,7 +296,7 @@ impl World {
         let (Some(last), Some(heard)) = (self.read.back(), self.judge.heard) else { return false };
         let passed_us = self.play.now.us_since(heard);
         let shown_us = sample.time_us.checked_sub(last.time_us).unwrap_or(u64::MAX);
-        sample.sequence > last.sequence && shown_us.abs_diff(passed_us) <= passed_us / 8 + 100_000
+        sample.sequence > last.sequence && shown_us.abs_diff(passed_us) <= passed_us / 32 + 100_000
     }
 
     /// The bridge reads all that is there.
@@ -355,10 +360,6 @@ impl World {
         let is_open = self.play.bridge.connection.pad().is_some();
         let phase = self.play.bridge.driver.pipeline.phase();
         let is_silent = self.is_stalled || self.kept.is_some();
-        if is_silent {
-            // What was there when the pad fell silent nobody sees pass.
-            self.judge.causes.renew_all(now);
-        }
         let is_off = self.off.iter().any(Option::is_some) || self.is_zero_old;
         if !is_off && self.judge.causes.have_passed(now) {
             self.was_off = [false; 9];

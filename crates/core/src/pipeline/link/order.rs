@@ -15,7 +15,7 @@ const KEPT: usize = 64;
 
 /// Over a gap the pad's clock shows what has passed, but for one part in so many. A coarser look takes a pad for the same that began anew
 /// when it had run for a moment.
-const PACE_OFF: u64 = 8;
+const PACE_OFF: u64 = 32;
 
 /// A sample with no more delay came without any.
 const DELAY_MAX_US: u64 = 20_000;

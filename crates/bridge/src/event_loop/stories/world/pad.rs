@@ -38,14 +38,24 @@ impl World {
             Event::Restart { time_us, is_flagged, offset, text } => {
                 self.judge.causes.note(play.now, Cause::Anew);
                 (play.sequence, play.offset) = (0, [offset; 9]);
-                self.seeming = if is_flagged { 0 } else { SEEMING };
+                self.seeming = SEEMING;
                 play.status = if is_flagged { Status::OK.with_restarted() } else { Status::OK };
                 self.set_clock(time_us);
                 self.send_if_plugged(BOOT_TEXTS[text].as_bytes())?;
             }
             Event::Identify(pad) => self.identify(pad)?,
             Event::Rate(rate_hz) => self.rate_hz = rate_hz,
-            Event::Stall(is_stalled) => self.is_stalled = is_stalled,
+            Event::Stall(true) => {
+                if !std::mem::replace(&mut self.is_stalled, true) {
+                    self.stalled_from = play.now;
+                }
+            }
+            Event::Stall(false) => {
+                if std::mem::take(&mut self.is_stalled) {
+                    // What was there when it fell silent nobody saw pass.
+                    self.judge.wait_is_over(play.now, play.now.us_since(self.stalled_from));
+                }
+            }
             Event::Keep(true) => {
                 if self.kept.is_none() {
                     (self.kept, self.kept_from) = (Some(Vec::new()), self.play.now);

@@ -277,11 +277,15 @@ fn each_fault_that_is_told_of_has_a_test_and_each_patch_a_place() {
         .flat_map(|folder| files(&root().join(folder), "rs"))
         .filter_map(|path| fs::read_to_string(path).ok())
         .collect();
-    let name = |row: &&str| row.split('`').rev().nth(1).unwrap_or_default().to_owned();
+    let cell = |row: &str, number| row.split('|').nth(number).unwrap_or_default().trim().to_owned();
+    let name = |row: &&str| cell(row, 4).replace('`', "");
     let is_missing = |name: &String| !all.contains(&format!("fn {name}("));
     let missing: Vec<String> = rows.iter().map(name).filter(is_missing).collect();
     assert!(missing.is_empty(), "tests that docs/faults.md names are not there: {missing:#?}");
+    let put_back: Vec<String> = rows.iter().map(|row| cell(row, 5)).collect();
     for patch in files(&root().join("tests/mutations"), "patch") {
+        let name = format!("`{}`", patch.file_stem().unwrap_or_default().display());
+        assert!(put_back.iter().any(|cell| cell.contains(&name)), "docs/faults.md has no row for {name}");
         let text = fs::read_to_string(&patch).unwrap_or_default();
         let lines = text.lines();
         let to = lines.clone().find_map(|line| line.strip_prefix("+++ b/")).unwrap_or_default();

@@ -32,6 +32,8 @@ pub(super) struct Notifier {
     reported_weighing: u64,
     /// What was reported to be wrong with the pad's stream, and when, if that is still so.
     reported_line: Option<(Subject, HostInstant)>,
+    /// Whether a state was reported since, so that nobody knows that it is still so.
+    is_line_overtaken: bool,
     limit: RateLimit,
 }
 
@@ -94,6 +96,7 @@ impl Notifier {
             reported_calls: false,
             reported_weighing: 0,
             reported_line: None,
+            is_line_overtaken: false,
             limit: RateLimit::default(),
         }
     }
@@ -109,7 +112,7 @@ impl Notifier {
         let lasts = state == State::Loaded || now.us_since(self.since) >= LASTING_US || is_untold;
         let is_reported = lasts && state != self.reported && self.limit.allows(now, Topic::State(state));
         is_reported.then(|| {
-            (self.reported, self.untold_since) = (state, None);
+            (self.reported, self.untold_since, self.is_line_overtaken) = (state, None, true);
             state
         })
     }
@@ -144,11 +147,14 @@ impl Notifier {
             return Some(format!("the pad's stream is in order again, after {seconds} s"));
         };
         let subject = (discriminant(finding), finding.channel());
-        let is_new = self.reported_line.is_none_or(|(reported, _)| reported != subject);
+        let is_new =
+            self.is_line_overtaken || self.reported_line.is_none_or(|(reported, _)| reported != subject);
         if !is_new || !self.limit.allows(now, Topic::Line(subject)) {
             return None;
         }
-        self.reported_line = Some((subject, now));
+        let since =
+            self.reported_line.filter(|(reported, _)| *reported == subject).map_or(now, |(_, since)| since);
+        (self.reported_line, self.is_line_overtaken) = (Some((subject, since)), false);
         Some(finding.to_string())
     }
 

@@ -109,7 +109,7 @@ impl Judge {
         waited.into_iter().for_each(|cause| self.causes.note(now, cause));
     }
 
-    /// Takes what went out by now.
+    /// Takes what went out by now, and what was told.
     pub(super) fn take(&mut self, play: &Play) -> Result<(), Broken> {
         for event in play.taken() {
             let mix = |sum: u64, value: u64| sum.rotate_left(5).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ value;
@@ -127,7 +127,7 @@ impl Judge {
                 self.may_go_down(play, &event.code)?;
             }
         }
-        Ok(())
+        self.are_told_true(play)
     }
 
     fn may_go_down(&self, play: &Play, code: &Code) -> Result<(), Broken> {
@@ -181,7 +181,6 @@ impl Judge {
             self.kept_since.get_or_insert(now);
         }
         let finding = play.bridge.driver.pipeline.line_finding();
-        self.are_told_true(play)?;
         // It is about the stream as it was heard last.
         if self.heard.is_none_or(|heard| now.us_since(heard) > RELEASED_US) {
             self.unheard = now;
@@ -225,15 +224,14 @@ impl Judge {
                     line.contains(words) && self.causes.within(now, NAMED_US).any(|cause| cause == *found)
                 })
         };
-        // What was told last lasts still, or may not be told again yet.
-        let is_about_this = |line: &&String| {
-            STATES.iter().any(|state| *line == state.sentence())
-                || FOUND.iter().any(|(words, _)| line.contains(words))
-                || **line == State::Playing.sentence()
-        };
+        // What was told last of the pad or of its stream lasts still, or may not be told again yet.
+        let is_state =
+            |line: &&String| STATES.iter().chain(&[State::Playing]).any(|state| *line == state.sentence());
+        let is_found = |line: &&String| FOUND.iter().any(|(words, _)| line.contains(words));
         let recent = messages.iter().zip(&self.told).filter(|(_, at)| now.us_since(**at) <= REPEAT_US);
-        let last = messages.iter().rfind(is_about_this);
-        if recent.map(|(line, _)| line).chain(last).any(is_right) {
+        let last_found = messages.iter().rfind(|line| is_state(line) || is_found(line));
+        let last = [messages.iter().rfind(is_state), last_found];
+        if recent.map(|(line, _)| line).chain(last.into_iter().flatten()).any(is_right) {
             return Ok(());
         }
         let told: Vec<String> = messages
@@ -244,7 +242,7 @@ impl Judge {
         broken("what keeps a pad from playing is told", format!("{}; {told:#?}", self.words(play)))
     }
 
-    /// What was told since the last look is true.
+    /// What was told since is true.
     fn are_told_true(&mut self, play: &Play) -> Result<(), Broken> {
         let now = play.now;
         let messages = play.messages.0.lock().unwrap();

@@ -289,3 +289,22 @@ fn a_pad_that_begins_anew_behind_a_hub_that_keeps_no_more_is_found_out() {
         &[&begun[..], &[(12_969, Touch(finger)), (542, Keep(false)), (1_000, Lift), (2_784, Mend)]].concat(),
     );
 }
+
+#[test]
+fn what_is_wrong_is_told_again_once_another_thing_was_told() {
+    let begun =
+        [(0, Off(7, Stuck)), (0, PlugIn { is_anew: false }), (25_921, Stall(true)), (1_000, Stall(false))];
+    holds(&[&begun[..], &[(38_437, Touch(RIGHT))]].concat());
+}
+
+#[test]
+fn a_pause_that_lasts_is_told_once() {
+    let begun = [(0, Mend), (0, Ask(Wish::Pause)), (22_825, Off(4, Stuck)), (14_026, Lift), (4_900, PullOut)];
+    holds(&[&begun[..], &[(2_600, Event::Cure), (20_000, Lift)]].concat());
+}
+
+#[test]
+fn what_is_told_before_a_silence_was_so_then() {
+    let finger = Contact { x_mm: 21.5, y_mm: -10.8, fx_n: 0.0, fy_n: 0.0, fz_n: 4.2 };
+    holds(&[(1, PLUG_IN), (0, Touch(finger)), (673, Lift), (37, Stall(true)), (3_000, Mend)]);
+}

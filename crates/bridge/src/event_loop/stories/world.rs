@@ -186,6 +186,7 @@ impl World {
     }
 
     fn wait_until(&mut self, end: HostInstant) -> Result<(), Broken> {
+        self.note_causes();
         let before = self.play.now;
         if self.frozen_until.is_some() {
             self.play.now = end;
@@ -301,6 +302,7 @@ impl World {
 
     /// The bridge reads all that is there.
     fn read(&mut self) -> Result<(), Broken> {
+        self.note_causes();
         loop {
             let woken = Woken { pad: self.play.is_hung_up_or_readable(), request: self.is_asked };
             self.is_asked = false;

@@ -12,6 +12,7 @@ mod diagnose_play;
 mod diagnose_report;
 mod docs;
 mod driven_load;
+mod forms;
 #[cfg(target_os = "linux")]
 mod hints;
 #[cfg(target_os = "linux")]

@@ -172,6 +172,8 @@ impl World {
     fn advance(&mut self, end: HostInstant) -> Result<(), Broken> {
         let samples = self.is_plugged && !self.is_stalled;
         let sample_at = samples.then(|| self.next_sample.max(self.play.now));
+        // What lasts is noted once a second.
+        let end = end.min(self.play.now.plus_us(1_000_000));
         let next = [Some(end), sample_at, self.frozen_until, self.read_at.iter().min().copied()];
         let next = next.into_iter().flatten().min().unwrap_or(end).max(self.play.now);
         self.wait_until(next)?;

@@ -308,3 +308,10 @@ fn what_is_told_before_a_silence_was_so_then() {
     let finger = Contact { x_mm: 21.5, y_mm: -10.8, fx_n: 0.0, fy_n: 0.0, fz_n: 4.2 };
     holds(&[(1, PLUG_IN), (0, Touch(finger)), (673, Lift), (37, Stall(true)), (3_000, Mend)]);
 }
+
+#[test]
+fn a_pad_that_begins_anew_with_a_clock_that_runs_is_found_out() {
+    let anew = Restart { time_us: 18_446_744_073_706_908_816, is_flagged: false, offset: 146_692, text: 0 };
+    let begun = [(0, Rate(100)), (0, Mend), (0, anew), (0, Pace(20_000)), (0, Event::Lose(1_000))];
+    holds(&[&begun[..], &[(248, Lift), (0, Mend)]].concat());
+}

@@ -31,6 +31,9 @@ const KEPT_MAX: usize = 64 << 10;
 /// The bridge knows so many of the newest samples again.
 const KNOWN: usize = 64;
 
+/// So many of the first samples of a pad that began anew may seem to go on from those before; one of them the text of its boot loader spoils.
+const SEEMING: u32 = 3;
+
 /// The loop wakes so often in one moment at most.
 const WAKES_MAX: u32 = 1_000;
 
@@ -62,8 +65,9 @@ pub(super) struct World {
     stalled_from: HostInstant,
     /// The newest samples that the bridge has read, or that wait for it.
     read: VecDeque<Sample>,
-    /// The pad began anew, and so many more samples may seem to go on from those before.
+    /// The pad began anew, and so many more samples in a row may seem to go on from the one that was read before, at this time.
     seeming: u32,
+    before: Option<(Sample, HostInstant)>,
     damage: u32,
     loss_permille: u32,
     damage_permille: u32,
@@ -113,6 +117,7 @@ impl World {
             stalled_from: HostInstant::default(),
             read: VecDeque::with_capacity(KNOWN),
             seeming: 0,
+            before: None,
             damage: 0,
             loss_permille: 0,
             damage_permille: 0,
@@ -281,10 +286,13 @@ impl World {
         if sample.status.restarted() {
             self.seeming = 0;
         }
-        if self.seeming > 0 && self.seems_to_go_on(sample) {
-            self.judge.causes.note(self.play.now, Cause::Unnoticed);
+        if self.seeming > 0 {
+            if self.seems_to_go_on(sample) {
+                self.judge.causes.note(self.play.now, Cause::Unnoticed);
+            }
+            let is_next = |last: &Sample| sample.time_us.wrapping_sub(last.time_us) <= 100_000;
+            self.seeming = if self.read.back().is_some_and(is_next) { self.seeming - 1 } else { SEEMING };
         }
-        self.seeming = self.seeming.saturating_sub(1);
         if self.read.len() == KNOWN {
             self.read.pop_front();
         }
@@ -294,9 +302,9 @@ impl World {
         }
     }
 
-    /// Whether this sample goes on by number and clock from the one that was read last, as far as one who waited for it can know.
+    /// Whether this sample goes on by number and clock from the one that was read before the pad began anew, as far as one who waited for it can know.
     fn seems_to_go_on(&self, sample: &Sample) -> bool {
-        let (Some(last), Some(heard)) = (self.read.back(), self.judge.heard) else { return false };
+        let Some((last, heard)) = self.before else { return false };
         let passed_us = self.play.now.us_since(heard);
         let shown_us = sample.time_us.checked_sub(last.time_us).unwrap_or(u64::MAX);
         sample.sequence > last.sequence && shown_us.abs_diff(passed_us) <= passed_us / 32 + 100_000

@@ -148,7 +148,6 @@ impl Link {
     /// The pad fell silent. Half a frame is forgotten. What comes next is of the same pad, which may have begun anew.
     pub fn fall_silent(&mut self, now: HostInstant) {
         self.is_silent = true;
-        self.other = None;
         self.clock.advance(now);
         self.receiver = MessageReceiver::new();
     }
@@ -156,7 +155,7 @@ impl Link {
     /// The pad was unplugged: whatever comes next begins anew.
     pub fn unplug(&mut self, now: HostInstant) {
         self.fall_silent(now);
-        self.run = None;
+        (self.run, self.other) = (None, None);
         self.check.forget();
     }
 
@@ -238,7 +237,10 @@ impl Link {
     fn step(&self, now: HostInstant, reading: &Reading) -> SequenceStep {
         let is_of_other = self.other.is_some_and(|other| other.is_followed_by(reading));
         match &self.run {
-            Some(run) if self.is_silent => run.step_over_silence(now, reading),
+            Some(run) if self.is_silent => match run.step_over_silence(now, reading) {
+                SequenceStep::Next if self.other.is_some_and(|other| other.is_many()) => SequenceStep::Anew,
+                step => step,
+            },
             Some(run) => match run.step(now, reading) {
                 SequenceStep::Next if is_of_other => SequenceStep::Apart,
                 step => step,

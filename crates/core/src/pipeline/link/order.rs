@@ -164,18 +164,25 @@ fn goes_on_closely(last: &Reading, next: &Reading) -> bool {
 pub(super) struct OtherRun {
     newest: Reading,
     pub(super) frames: u32,
+    /// All that came since the last sample.
+    total: u32,
 }
 
 impl OtherRun {
     /// The run that `sample` goes on, if it does, or begins.
     pub(super) fn with(run: Option<Self>, sample: &Reading) -> Self {
         let frames = run.filter(|run| goes_on_closely(&run.newest, sample)).map_or(0, |run| run.frames);
-        Self { newest: *sample, frames: frames + 1 }
+        Self { newest: *sample, frames: frames + 1, total: run.map_or(0, |run| run.total) + 1 }
     }
 
     /// Whether `sample` is the next one of it.
     pub(super) fn is_followed_by(&self, sample: &Reading) -> bool {
         sample.sequence.wrapping_sub(self.newest.sequence) == 1 && goes_on_closely(&self.newest, sample)
+    }
+
+    /// Whether so many came since the last sample that a sample that goes on from that one after all does so by chance.
+    pub(super) const fn is_many(&self) -> bool {
+        self.total >= RUN_FRAMES
     }
 
     /// Whether it is long enough to be the pad's own.

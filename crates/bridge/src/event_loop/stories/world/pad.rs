@@ -3,9 +3,6 @@
 use super::*;
 use tactpad_core::pipeline::link::SILENCE_MAX_US;
 
-/// So many of the first samples of a pad that began anew may seem to go on from those before; one of them the text of its boot loader spoils.
-const SEEMING: u32 = 3;
-
 impl World {
     pub(super) fn happen_to_pad(&mut self, event: Event) -> Result<(), Broken> {
         let play = &mut self.play;
@@ -38,6 +35,9 @@ impl World {
             Event::Restart { time_us, is_flagged, offset, text } => {
                 self.judge.causes.note(play.now, Cause::Anew);
                 (play.sequence, play.offset) = (0, [offset; 9]);
+                if self.seeming == 0 {
+                    self.before = self.read.back().copied().zip(self.judge.heard);
+                }
                 self.seeming = SEEMING;
                 play.status = if is_flagged { Status::OK.with_restarted() } else { Status::OK };
                 self.set_clock(time_us);

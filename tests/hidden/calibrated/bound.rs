@@ -308,6 +308,14 @@ fn a_field_that_is_off_smoothly_costs_little() {
     every_seed_is_near_the_bound(&Kind::nominal(648, 0.015, 14.0).outcomes(401..=401));
 }
 
+/// The fit with a stage that is off by a third of it is a maximum, too.
+#[test]
+fn a_module_that_is_far_off_is_not_taken_for_a_stage() {
+    let moved = CASES.iter().find(|case| case.name == "m0_moved").unwrap();
+    let kind = Kind { case: moved, ..Kind::nominal(648, 0.015, 14.0) };
+    every_seed_is_near_the_bound(&kind.outcomes(711..=711));
+}
+
 #[test]
 #[ignore = "proof: 900 s: forty seeds instead of one"]
 fn fields_that_are_off_smoothly_cost_little() {

@@ -308,6 +308,14 @@ fn a_field_that_is_off_smoothly_costs_little() {
     every_seed_is_near_the_bound(&Kind::nominal(648, 0.015, 14.0).outcomes(401..=401));
 }
 
+/// The fit with a stage that is off by a third of it is a maximum, too.
+#[test]
+fn a_module_that_is_far_off_is_not_taken_for_a_stage() {
+    let moved = CASES.iter().find(|case| case.name == "m0_moved").unwrap();
+    let kind = Kind { case: moved, ..Kind::nominal(648, 0.015, 14.0) };
+    every_seed_is_near_the_bound(&kind.outcomes(711..=711));
+}
+
 #[test]
 #[ignore = "proof: 900 s: forty seeds instead of one"]
 fn fields_that_are_off_smoothly_cost_little() {
@@ -342,7 +350,7 @@ fn a_large_and_fine_error_is_covered() {
 const RIG_MOST: f64 = 1.3;
 
 #[test]
-#[ignore = "proof: 500 s: misses its goal on one pad of 52, as docs/decoding.md says: six fields, memories and rigs, with four backgrounds each"]
+#[ignore = "proof: 600 s: six fields, memories and rigs, with four backgrounds each"]
 fn other_pads_and_rigs_cost_little() {
     const BACKGROUNDS: [(f64, f64); 4] = [(0.0, 14.0), (0.005, 20.0), (0.015, 14.0), (0.03, 20.0)];
     let kinds = CASES.iter().flat_map(|case| {

@@ -199,10 +199,10 @@ impl<'m, L> Search<'m, L> {
             let mut marginal = systems.marginal(&found)?;
             self.columns.pull(&mut marginal, &applied);
             let solved = fitted.solved(&marginal)?;
-            let moves = self.moves(&applied, &solved.coordinates, &marginal);
-            if steps == REFITS || moves < STANDS {
+            let unsettled = self.unsettled(&applied, &solved.coordinates, &marginal);
+            if steps == REFITS || unsettled < STANDS {
                 return Ok(AttributionFit {
-                    unsettled: self.unsettled(&applied, &solved.coordinates, &marginal),
+                    unsettled,
                     applied,
                     systems,
                     background: found,
@@ -230,14 +230,6 @@ impl<'m, L> Search<'m, L> {
             moved.fold(0.0, f64::max)
         };
         applied.iter().map(moved).fold(0.0, f64::max)
-    }
-
-    /// By how many standard deviations a step moves the numbers that are asked for at most; a course has none.
-    fn moves(&self, applied: &Applied, step: &[f64], marginal: &Marginal) -> f64 {
-        let columns = applied.iter().flat_map(|(at, _)| &self.columns.of_hypothesis[*at]);
-        columns
-            .map(|column| step[*column].abs() * marginal.fisher.at(*column, *column).sqrt())
-            .fold(0.0, f64::max)
     }
 
     /// A Gauss-Newton step s after a last one s₀, and how much of it is taken: by how far it turns back, ρ = sᵀ F s₀/(s₀ᵀ F s₀), with

@@ -1,7 +1,9 @@
 //! Result of a fit: how probable it is and how sure, the pad's own field, and the contacts without what the past adds to them.
 
 use crate::calibration::data::contacts::{FieldAtPlace, Knowledge, Measured};
+use crate::calibration::data::rig::RigPrior;
 use crate::calibration::model::ParameterLayout;
+use crate::calibration::problem::hyperparameters::Estimates;
 use crate::calibration::problem::{PosteriorFit, Problem};
 use tactpad_core::pad::influence::{InfluenceField, MAPS};
 use tactpad_core::pipeline::compensation::hysteresis::Hysteresis;
@@ -21,6 +23,14 @@ impl PosteriorFit {
     /// ln p(y, σ | settings) but for a constant that all settings share, as the priors' deviations σ are found from the contacts, too.
     pub(crate) fn log_probability(&self) -> f64 {
         self.log_evidence + self.estimates.prior_deviations.log_density()
+    }
+
+    /// The same as a start from which a module is far off and the rig is as any.
+    pub(crate) fn displaced(&self, module: usize) -> Self {
+        let prior_deviations = self.estimates.prior_deviations.displaced(module);
+        let mut start = self.clone();
+        start.estimates = Estimates { prior_deviations, rig: RigPrior::new(), ..self.estimates };
+        start
     }
 
     /// L⁻¹c of a linear combination cᵀθ of few parameters, where H = L Lᵀ: the posterior covariance of two combinations is

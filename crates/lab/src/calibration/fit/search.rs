@@ -11,6 +11,7 @@ use crate::calibration::model::prior::Prior;
 use crate::calibration::problem::effort::Effort;
 use crate::calibration::problem::hyperparameters::Settings;
 use crate::calibration::problem::{PosteriorFit, Problem};
+use tactpad_core::quantity::MODULES;
 use tactpad_numeric::memory::Relaxation;
 
 /// Thresholds of play operators that are tried: a geometric sequence, then halved steps of its exponent around the best.
@@ -55,6 +56,7 @@ impl<'r> FitCount<'r> {
             + prior.thresholds_uv.iter().map(search).sum::<usize>()
             + CREEP_TIMES_S.len()
             + 2
+            + MODULES
     }
 
     /// Hears of so many more.
@@ -95,7 +97,7 @@ pub(crate) fn fitted<'b>(
 }
 
 /// The same with a background: where labels tell the field, always, as no field is the simulator's; in play, if the evidence asks for
-/// one.
+/// one. Of several maxima it is the most probable one.
 fn with_background<'b>(
     problem: Problem<'b>,
     plain: PosteriorFit,
@@ -106,8 +108,22 @@ fn with_background<'b>(
     // may take up what is theirs.
     let tried = |from| counted.fitted(&smooth, plain.settings, from, Effort::FULL);
     let (one, other) = rayon::join(|| tried(None), || tried(Some(&plain)));
+    let mut found: Vec<PosteriorFit> = one.into_iter().chain(other).collect();
+    let best = found.iter().map(|it| it.log_evidence).fold(f64::NEG_INFINITY, f64::max);
+    let are_displaced = |it: &PosteriorFit| it.estimates.prior_deviations.are_displaced();
+    if !problem.layout.is_play && found.iter().any(are_displaced) {
+        // One module that is far off, and all that are off a little on a stage that is, look alike, and none of the two leads to the other.
+        let effort = Effort { least: best, ..Effort::FULL };
+        let displaced: Vec<PosteriorFit> = (0..MODULES)
+            .into_par_iter()
+            .filter_map(|module| {
+                counted.fitted(&smooth, plain.settings, Some(&plain.displaced(module)), effort)
+            })
+            .collect();
+        found.extend(displaced);
+    }
     let found =
-        one.into_iter().chain(other).max_by(|one, other| one.log_evidence.total_cmp(&other.log_evidence));
+        found.into_iter().max_by(|one, other| one.log_probability().total_cmp(&other.log_probability()));
     let is_asked = |it: &PosteriorFit| !problem.layout.is_play || it.log_evidence > plain.log_evidence;
     match found.filter(is_asked) {
         Some(found) => (smooth, found),

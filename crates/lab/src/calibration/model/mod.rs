@@ -167,7 +167,8 @@ impl ParameterLayout {
     }
 
     /// What each module's displacement has of the mean of all, by its parameters' places: to contacts with labels that is the stage's.
-    pub(crate) fn common_shift(&self, differences: impl Fn(usize) -> f64) -> Vec<(usize, f64)> {
+    /// The mean counts a module by its prior's precision: one that is far off moves it little, or the two others would seem to be off.
+    pub(crate) fn common_shift(&self, differences: &[f64], precisions: &[f64]) -> Vec<(usize, f64)> {
         // The parameter's direction: outwards, or counter-clockwise.
         let direction = |it: &Physical| {
             let (sin, cos) = self.module_angles_deg[it.parameter.module()?].to_radians().sin_cos();
@@ -178,8 +179,12 @@ impl ParameterLayout {
         let shifts: Vec<(usize, [f64; 2])> =
             shifts.filter_map(|(it, at)| Some((at, direction(it)?))).collect();
         let mean = [0, 1].map(|axis| {
-            let sum: f64 = shifts.iter().map(|(at, direction)| direction[axis] * differences(*at)).sum();
-            sum / MODULES as f64
+            // Both parameters of a module have one precision, and two directions at right angles.
+            let [sum, whole] = shifts.iter().fold([0.0; 2], |[sum, whole], (at, direction)| {
+                let weight = precisions[*at];
+                [sum + weight * direction[axis] * differences[*at], whole + weight * direction[axis].powi(2)]
+            });
+            sum / whole
         });
         shifts.iter().map(|(at, direction)| (*at, dot(direction, &mean))).collect()
     }

@@ -66,6 +66,8 @@ const HYSTERESIS_OWN: f64 = 0.02;
 /// Deviations of the wide part of a module's displacement over those of the narrow one, and the probability of the wide one.
 const WIDE: f64 = 5.0;
 const WIDE_PROBABILITY: f64 = 0.1;
+/// λ of the wide part.
+const FAR_OFF: f64 = 1.0 / (WIDE * WIDE);
 /// Prior standard deviations. Of gains: the authors' earlier pad has 0.83 to 1.33.
 pub(crate) const GAIN_DEVIATION: f64 = 0.3;
 /// Of ln S, the scale of all that a load makes, where no label tells newtons. Presses alone say nothing of it: with S twice as
@@ -147,6 +149,18 @@ impl PriorDeviations {
         self.deviations[kind as usize]
     }
 
+    /// At the beginning, where this module is taken to be far off.
+    pub(crate) fn displaced(self, module: usize) -> Self {
+        let mut displaced = [1.0; MODULES];
+        displaced[module] = FAR_OFF;
+        Self { deviations: self.initial, displaced, background: BackgroundDeviations::first(), ..self }
+    }
+
+    /// Whether modules seem to be put down less carefully than pads are built.
+    pub(crate) fn are_displaced(&self) -> bool {
+        self.of(ParameterKind::Shift) > SHIFT_MM
+    }
+
     /// Whether channels of one module share more than leaks do.
     pub(crate) fn is_shared_within(&self) -> bool {
         self.of(ParameterKind::CrosstalkWithin) > SHARED_WITHIN * CROSSTALK
@@ -163,13 +177,19 @@ impl PriorDeviations {
     /// ln p(ln σ²) = κ ln (σ₀/σ) − ½ κ (σ₀/σ)²
     /// ```
     ///
-    /// which is the same whatever σ₀ is, if σ is as many times that.
+    /// which is the same whatever σ₀ is, if σ is as many times that. With it, for each module that is far off with the probability r, what
+    /// the evidence with E[λ] lacks of the mixture's (the variational bound; both coordinates have one λ):
+    ///
+    /// ```text
+    /// r ln (p/r) + (1 − r) ln ((1 − p)/(1 − r)) + E[ln λ] − ln E[λ]
+    /// ```
     pub(crate) fn log_density(&self) -> f64 {
         let of = |(deviation, initial): (&f64, &f64)| {
             let ratio = initial / deviation;
             PSEUDO_COUNT * (libm::log(ratio) - 0.5 * ratio * ratio)
         };
-        self.deviations.iter().zip(&self.initial).map(of).sum()
+        let by_size: f64 = self.deviations.iter().zip(&self.initial).map(of).sum();
+        by_size + self.displaced.iter().map(|factor| log_mixture(*factor)).sum::<f64>()
     }
 
     /// λ.
@@ -225,10 +245,22 @@ impl PriorDeviations {
 /// odds = p/(1 − p) W⁻² exp(½ q (1 − W⁻²)),    E[λ] = (1 + odds W⁻²)/(1 + odds)
 /// ```
 fn expected_factor(square: f64) -> f64 {
-    let wide = 1.0 / (WIDE * WIDE);
-    let odds =
-        WIDE_PROBABILITY / (1.0 - WIDE_PROBABILITY) * wide * libm::exp(0.5 * square.min(1e3) * (1.0 - wide));
-    (1.0 + odds * wide) / (1.0 + odds)
+    let odds = WIDE_PROBABILITY / (1.0 - WIDE_PROBABILITY)
+        * FAR_OFF
+        * libm::exp(0.5 * square.min(1e3) * (1.0 - FAR_OFF));
+    (1.0 + odds * FAR_OFF) / (1.0 + odds)
+}
+
+/// What the evidence with a module's E[λ] lacks of the mixture's.
+fn log_mixture(expected: f64) -> f64 {
+    let far_off = ((1.0 - expected) / (1.0 - FAR_OFF)).clamp(0.0, 1.0);
+    let part = |share: f64, probability: f64| {
+        if share > 0.0 { share * libm::log(probability / share) } else { 0.0 }
+    };
+    part(far_off, WIDE_PROBABILITY)
+        + part(1.0 - far_off, 1.0 - WIDE_PROBABILITY)
+        + far_off * libm::log(FAR_OFF)
+        - libm::log(expected)
 }
 
 #[cfg(test)]
@@ -319,8 +351,21 @@ mod tests {
     }
 
     #[test]
+    fn with_what_it_lacks_the_evidence_is_that_of_the_mixture() {
+        for square in [0.0, 3.0, 7.0, 12.0, 80.0_f64] {
+            let mixture: f64 = [(1.0 - WIDE_PROBABILITY, 1.0), (WIDE_PROBABILITY, FAR_OFF)]
+                .map(|(probability, factor)| probability * factor * (-0.5 * factor * square).exp())
+                .iter()
+                .sum();
+            let expected = expected_factor(square);
+            let normal = expected.ln() - 0.5 * expected * square;
+            assert!((normal + log_mixture(expected) - mixture.ln()).abs() < 1e-9, "{square}");
+        }
+    }
+
+    #[test]
     fn what_the_parts_have_in_common_is_between_them() {
         assert!((expected_factor(0.0) - 1.0).abs() < 0.01);
-        assert!((expected_factor(1e9) - 1.0 / (WIDE * WIDE)).abs() < 1e-12);
+        assert!((expected_factor(1e9) - FAR_OFF).abs() < 1e-12);
     }
 }

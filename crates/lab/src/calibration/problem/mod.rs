@@ -208,7 +208,7 @@ impl<'f> Problem<'f> {
                 values.iter().zip(&mean).map(|(value, mean)| value - mean).collect();
             if !self.layout.is_play {
                 // Modules that are off alike are a stage that is off, and say nothing of how carefully modules are put down.
-                let common = self.layout.common_shift(|at| differences[at]);
+                let common = self.layout.common_shift(&differences, &precisions);
                 common.into_iter().for_each(|(at, common)| differences[at] -= common);
             }
             let deviating = self.layout.kinds().map(|(kind, module, at)| {

@@ -191,7 +191,9 @@ impl Judge {
             return broken("what is found is so", format!("{finding}; {}", self.words(play)));
         }
         if state != State::Playing && self.kept_since.is_some_and(|since| now.us_since(since) > NAMED_US) {
-            self.is_named(play, state, finding)?;
+            // Of a stream that is not heard any more a finding explains nothing.
+            let is_recent = self.heard.is_some_and(|heard| now.us_since(heard) <= NAMED_US);
+            self.is_named(play, state, finding.filter(|_| is_recent))?;
         }
         Ok(())
     }

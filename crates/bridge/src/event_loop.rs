@@ -419,13 +419,17 @@ impl Bridge {
             return;
         }
         self.snapshot_at = now;
-        let finding = self.connection.finding().or_else(|| self.driver.pipeline.line_finding().copied());
-        if let Some(line) = self.notifier.line_to_report(now, finding.as_ref()) {
+        let pipeline = &self.driver.pipeline;
+        let unreadable = self.connection.finding();
+        // What was wrong with a stream that has ended explains nothing.
+        let is_over = unreadable.is_none() && pipeline.is_quiet(now);
+        let finding = unreadable.or_else(|| pipeline.line_finding().copied());
+        if !is_over && let Some(line) = self.notifier.line_to_report(now, finding.as_ref()) {
             self.host.tell(&line);
         }
         let state = state(&self.driver, &self.connection);
         // What is wrong with the stream says more than what comes of it.
-        if !finding.is_some_and(|finding| state.may_come_of(&finding))
+        if !finding.is_some_and(|finding| !is_over && state.may_come_of(&finding))
             && let Some(state) = self.notifier.state_to_report(now, state)
         {
             self.host.tell(state.sentence());

@@ -6,7 +6,6 @@ use firmware_proto::frame::Message;
 
 use super::stories::{AWAY, RIGHT};
 use super::virtual_time::Play;
-use tactpad_core::quantity::Contact;
 
 /// How old a frame from the past is, in frames.
 fn ages() -> impl Strategy<Value = u32> {
@@ -29,18 +28,6 @@ fn repeat(play: &mut Play, age: u32, frames: u32) {
     (play.sequence, play.time_us, play.sent) = (sequence, time_us, sent);
 }
 
-/// The pad's samples of a contact come late, all at once.
-fn stall(play: &mut Play, contact: &Contact, ms: u64) {
-    let time_us = play.time_us;
-    play.wait(ms);
-    play.time_us = time_us;
-    for _ in 0..ms {
-        let sample = play.sample(contact);
-        play.send(play.now, &Message::Sample(sample));
-        play.time_us = play.time_us.wrapping_add(play.us_per_ms);
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -54,7 +41,7 @@ proptest! {
             if is_starved {
                 play.starve(&RIGHT, ms, None);
             } else {
-                stall(&mut play, &RIGHT, ms);
+                play.stall(&RIGHT, ms);
             }
             // In doubt for 50 ms.
             play.touch(&RIGHT, 60);

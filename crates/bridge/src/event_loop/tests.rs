@@ -6,7 +6,10 @@ use super::virtual_time::{ASKED, ASLEEP, Edge, MessageLog, Play, bridge};
 use super::*;
 use crate::opening::OpenedPad;
 use crate::sink::null::NullSink;
+use crate::state::State;
 use crate::transport::opener::PadError;
+use tactpad_core::pad::field::PadField;
+use tactpad_core::quantity::Contact;
 
 /// A bridge whose pad never comes, what it tells, and how often it looked for the pad.
 fn without_pad() -> (Bridge, MessageLog, Arc<AtomicUsize>) {
@@ -116,14 +119,91 @@ fn a_sequence_number_of_eight_bits_is_told_before_what_comes_of_it() {
     let mut play = Play::waiting();
     play.plug_in();
     play.wait(300);
+    let tells =
+        |play: &Play, begin: &str| play.messages.0.lock().unwrap().iter().any(|line| line.starts_with(begin));
     for ms in 0..6_000_u64 {
         let fz_n = if ms > 1_000 && ms % 500 < 300 { 2.0 } else { 0.0 };
         play.press(fz_n, 1);
         play.sequence &= 255;
+        assert!(ms < 300 || tells(&play, "after sequence number 255"), "{ms} ms");
     }
-    let told = play.messages.0.lock().unwrap();
-    assert!(told.iter().any(|line| line.starts_with("after sequence number 255")), "{told:?}");
-    assert!(!told.iter().any(|line| line.contains("lift the finger")), "{told:?}");
+    assert!(!tells(&play, "lift the finger"));
+}
+
+/// A pad that lost a tenth of its frames, or whose channel stood, and then says nothing.
+#[test]
+fn a_pad_that_falls_silent_is_told_to_be_silent_whatever_its_line_had() {
+    let losing = |play: &mut Play| {
+        play.press(0.0, 9);
+        play.sample(&Contact::default());
+        play.wait(1);
+    };
+    let standing = |play: &mut Play| {
+        play.wiring = Box::new(|_, counts| counts[7] = 1_234);
+        play.press(0.0, 10);
+    };
+    let lines: [(&str, &dyn Fn(&mut Play)); 2] = [("10.0 %", &losing), ("channel m2y reads 1234", &standing)];
+    for (begin, line) in lines {
+        let mut play = Play::start();
+        (0..500).for_each(|_| line(&mut play));
+        let told = play.messages.clone();
+        let last = || told.0.lock().unwrap().last().cloned().unwrap_or_default();
+        assert!(last().starts_with(begin), "{}", last());
+        play.wait(2_000);
+        assert_eq!(last(), State::Silent.sentence());
+    }
+}
+
+#[test]
+fn another_channel_that_stands_is_told_at_once() {
+    let mut play = Play::start();
+    for (channel, name) in [(3, "m1x"), (7, "m2y"), (0, "m0x")] {
+        play.wiring = Box::new(move |_, counts| counts[channel] = 1_234);
+        play.press(0.0, 3_000);
+        let told = play.messages.0.lock().unwrap();
+        assert!(told.iter().any(|line| line.starts_with(&format!("channel {name} reads 1234"))), "{told:?}");
+    }
+}
+
+/// Without it the difference between what it read then and what it reads now looks like a finger.
+#[test]
+fn a_channel_that_answers_again_has_the_zero_measured_anew() {
+    let mut play = Play::waiting();
+    play.plug_in();
+    play.wait(300);
+    let pressed = PadField::nominal().signals.strain_uv(&Contact { fz_n: 3.0, ..Contact::default() }).uv;
+    let stuck = move |number: u32, counts: &mut [i32; 9]| {
+        if number < 5_000 {
+            for channel in [2, 5, 8] {
+                counts[channel] = (-100.0 * pressed[channel]) as i32;
+            }
+        }
+    };
+    play.wiring = Box::new(stuck);
+    play.press(0.0, 5_000);
+    assert_eq!(play.press(0.0, 2_000), []);
+    assert!(is_edge(&play.press(3.0, 100), 1, EDGE_MAX_US));
+}
+
+/// What a pad's clock shows has passed while its samples waited.
+fn no_clock_is_accused(wait: impl Fn(&mut Play, u64)) {
+    for ms in [100, 1_000, 3_000, 7_000, 60_000] {
+        let mut play = Play::start();
+        wait(&mut play, ms);
+        play.press(0.0, 3_000);
+        let told = play.messages.0.lock().unwrap();
+        assert!(!told.iter().any(|line| line.starts_with("the pad's clock")), "{ms} ms: {told:?}");
+    }
+}
+
+#[test]
+fn a_machine_that_stood_still_does_not_accuse_the_pads_clock() {
+    no_clock_is_accused(|play, ms| drop(play.starve(&Contact::default(), ms, None)));
+}
+
+#[test]
+fn samples_that_a_hub_kept_do_not_accuse_the_pads_clock() {
+    no_clock_is_accused(|play, ms| play.stall(&Contact::default(), ms));
 }
 
 #[test]

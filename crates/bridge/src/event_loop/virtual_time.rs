@@ -328,6 +328,18 @@ impl Play {
         edges
     }
 
+    /// Keeps this contact for so long, while a hub keeps what the pad sends, and then hands on all of it.
+    pub(super) fn stall(&mut self, contact: &Contact, ms: u64) {
+        let time_us = self.time_us;
+        self.wait(ms);
+        self.time_us = time_us;
+        for _ in 0..ms {
+            let sample = self.sample(contact);
+            self.send(self.now, &Message::Sample(sample));
+            self.time_us = self.time_us.wrapping_add(self.us_per_ms);
+        }
+    }
+
     /// Puts bytes on the line, as many as a terminal holds whole.
     pub(super) fn buffer(&mut self, bytes: &[u8]) {
         self.plug.unread(|unread| {

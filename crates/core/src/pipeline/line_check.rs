@@ -32,8 +32,9 @@ const CLOCK_OFF: u64 = 2;
 /// A clock that is set anew more often in a look is none.
 const SET_ANEW_MAX: u32 = 8;
 
-/// Bytes that waited for a host that was busy arrive at once: so much more time may be shown in one look than has passed.
-const BURST_US: u64 = 1_000_000;
+/// Samples that waited come at once, within so long; what they show has not passed meanwhile.
+const BURST_US: u64 = 100_000;
+const PARTS: usize = LOOK_US.div_ceil(BURST_US) as usize;
 
 /// A smaller share of frames that do not arrive, in percent, is not worth a word; nor are fewer frames in a look.
 const LOSS_PERCENT_MIN: f32 = 1.0;
@@ -252,6 +253,8 @@ struct Look {
     /// The last of the samples that go on from one another, and what they show.
     taken: Option<Reading>,
     clock: Option<ShownTime>,
+    /// What the pad's clock showed in each [`BURST_US`], µs.
+    shown_us: [u64; PARTS],
     lost: u32,
     has_changed: [bool; CHANNELS],
 }
@@ -271,6 +274,11 @@ impl LineCheck {
     /// What is wrong, if anything is.
     pub const fn finding(&self) -> Option<&LineFinding> {
         self.finding.as_ref()
+    }
+
+    /// When a sample came last.
+    pub fn heard(&self) -> Option<HostInstant> {
+        self.look.as_ref().map(|look| look.heard)
     }
 
     /// Takes a sample, as it came. Of a frame that was damaged the number is missing.
@@ -296,6 +304,9 @@ impl LineCheck {
             look.take(reading);
             let clock = look.clock.unwrap_or(ShownTime { last_us, us: 0, delay_us, samples: 0 });
             let us = clock.us.saturating_add(step_us);
+            let part = (now.us_since(look.begun) / BURST_US) as usize;
+            let shown_us = &mut look.shown_us[part.min(PARTS - 1)];
+            *shown_us = shown_us.saturating_add(step_us);
             look.clock = Some(ShownTime { last_us, us, samples: clock.samples + 1, ..clock });
         }
         look.sample(now, reading);
@@ -310,7 +321,7 @@ impl LineCheck {
         let look = self.look.take();
         let found = look.as_ref().and_then(|look| look.found(0));
         let is_certain = found.as_ref().is_some_and(LineFinding::is_certain)
-            && look.as_ref().and_then(|look| look.found(BURST_US)) == found;
+            && look.as_ref().and_then(|look| look.found(look.burst_us())) == found;
         let is_again = match (&self.candidate, &found) {
             (_, None) => false,
             (Some(before), Some(now)) => before.is_seen_again_as(now) || is_certain,
@@ -349,6 +360,7 @@ impl Look {
             broken_us: 0,
             taken: None,
             clock: None,
+            shown_us: [0; PARTS],
             lost: 0,
             has_changed: [false; CHANNELS],
         }
@@ -381,6 +393,11 @@ impl Look {
         let largest = self.last.sequence;
         let is_full = largest >= u8::MAX.into() && largest & largest.wrapping_add(1) == 0;
         (is_full && reading.sequence == 0 && falls(&self.last, reading)).then_some(largest)
+    }
+
+    /// The most that was shown within two neighbouring parts, which a burst may lie in, µs.
+    fn burst_us(&self) -> u64 {
+        self.shown_us.windows(2).map(|pair| pair[0].saturating_add(pair[1])).max().unwrap_or(0)
     }
 
     /// The gravest that it shows, where what came may have waited for so long, µs.

@@ -15,7 +15,7 @@ use crate::pipeline::mapping::live::Presses;
 use crate::pipeline::mapping::live::intent::Level;
 use crate::pipeline::mapping::live::verdict::Verdict;
 use crate::quantity::{CHANNELS, Contact, Strain};
-use crate::time::StreamInstant;
+use crate::time::{HostInstant, StreamInstant};
 
 impl Pipeline {
     /// Whether a pad is being heard: a sample came and the link has not been lost since.
@@ -101,6 +101,11 @@ impl Pipeline {
     /// What is wrong with the pad's stream as a whole, if anything is.
     pub const fn line_finding(&self) -> Option<&LineFinding> {
         self.link.finding()
+    }
+
+    /// Whether no sample has come for a second, not even one that cannot be used.
+    pub fn is_quiet(&self, now: HostInstant) -> bool {
+        self.link.is_quiet(now)
     }
 
     /// What the pad told of itself, if it did.

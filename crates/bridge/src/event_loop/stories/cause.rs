@@ -2,6 +2,7 @@
 
 use crate::state::State;
 use tactpad_core::pipeline::line_check::LineFinding;
+use tactpad_core::quantity::CHANNELS;
 use tactpad_core::time::HostInstant;
 
 /// Something that keeps a pad from playing.
@@ -102,12 +103,50 @@ impl Cause {
 
 /// When each cause was there last.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Causes([Option<HostInstant>; ALL.len()]);
+pub(super) struct Causes {
+    there: [Option<HostInstant>; ALL.len()],
+    /// When each channel was off last.
+    off: [Option<HostInstant>; CHANNELS],
+    /// When the pad had not been sound and untouched for long enough since each channel was off.
+    off_since_sound: [Option<HostInstant>; CHANNELS],
+}
 
 impl Causes {
     /// It is there at `now`.
     pub(super) fn note(&mut self, now: HostInstant, cause: Cause) {
-        self.0[cause as usize] = Some(now);
+        self.there[cause as usize] = Some(now);
+    }
+
+    /// These channels are off at `now`, and those were since the pad was sound.
+    pub(super) fn note_off(
+        &mut self,
+        now: HostInstant,
+        off: [bool; CHANNELS],
+        since_sound: [bool; CHANNELS],
+    ) {
+        for (at, _) in self.off.iter_mut().zip(off).filter(|(_, is_off)| *is_off) {
+            *at = Some(now);
+        }
+        for (at, _) in self.off_since_sound.iter_mut().zip(since_sound).filter(|(_, was_off)| *was_off) {
+            *at = Some(now);
+        }
+    }
+
+    /// What was there within the last `us` is there at `now`.
+    pub(super) fn note_again(&mut self, now: HostInstant, us: u64) {
+        for at in self.there.iter_mut().chain(&mut self.off).chain(&mut self.off_since_sound) {
+            *at = at.map(|at| if now.us_since(at) <= us { now } else { at });
+        }
+    }
+
+    /// Whether this channel was off within the last `us`.
+    pub(super) fn was_off(&self, now: HostInstant, us: u64, channel: usize) -> bool {
+        self.off[channel].is_some_and(|at| now.us_since(at) <= us)
+    }
+
+    /// The same of one that may have become its own zero meanwhile: it reads otherwise when it is sound again.
+    pub(super) fn was_off_since_sound(&self, now: HostInstant, us: u64, channel: usize) -> bool {
+        self.off_since_sound[channel].is_some_and(|at| now.us_since(at) <= us)
     }
 
     /// If it keeps the pad from playing still, it does so as if it were there at `now`.
@@ -118,12 +157,13 @@ impl Causes {
     }
 
     fn has_passed(&self, now: HostInstant, cause: Cause) -> bool {
-        self.0[cause as usize].is_none_or(|at| now.us_since(at) > cause.aftermath_us())
+        self.there[cause as usize].is_none_or(|at| now.us_since(at) > cause.aftermath_us())
     }
 
     /// Those that were there within the last `us`.
     pub(super) fn within(&self, now: HostInstant, us: u64) -> impl Iterator<Item = Cause> {
-        ALL.into_iter().filter(move |cause| self.0[*cause as usize].is_some_and(|at| now.us_since(at) <= us))
+        ALL.into_iter()
+            .filter(move |cause| self.there[*cause as usize].is_some_and(|at| now.us_since(at) <= us))
     }
 
     /// Whether a pad has to play: whatever kept it from that is over for long enough.
@@ -140,7 +180,7 @@ impl Causes {
     pub(super) fn explain(&self, now: HostInstant, us: u64, state: State) -> bool {
         ALL.into_iter().any(|cause| {
             let lasts_us = us.max(cause.aftermath_us());
-            cause.explains(state) && self.0[cause as usize].is_some_and(|at| now.us_since(at) <= lasts_us)
+            cause.explains(state) && self.there[cause as usize].is_some_and(|at| now.us_since(at) <= lasts_us)
         })
     }
 

@@ -13,6 +13,7 @@ use crate::state::State;
 use tactpad_core::pipeline::Phase;
 use tactpad_core::pipeline::control::{Code, OutputDevice};
 use tactpad_core::pipeline::line_check::LineFinding;
+use tactpad_core::quantity::CHANNEL_NAMES;
 use tactpad_core::time::HostInstant;
 
 /// Silence releases everything within this time, µs.
@@ -105,8 +106,7 @@ impl Judge {
 
     /// What waited for so long comes now, and with it whatever was there then.
     pub(super) fn wait_is_over(&mut self, now: HostInstant, waited_us: u64) {
-        let waited: Vec<Cause> = self.causes.within(now, waited_us + NAMED_US).collect();
-        waited.into_iter().for_each(|cause| self.causes.note(now, cause));
+        self.causes.note_again(now, waited_us + NAMED_US);
     }
 
     /// Takes what went out by now, and what was told.
@@ -222,9 +222,7 @@ impl Judge {
         let is_right = |line: &String| {
             STATES.iter().any(|state| line == state.sentence() && self.causes.explain(now, NAMED_US, *state))
                 || finding.is_some_and(|finding| is_of_kind(line, finding))
-                || FOUND.iter().any(|(words, found)| {
-                    line.contains(words) && self.causes.within(now, NAMED_US).any(|cause| cause == *found)
-                })
+                || self.is_found_so(now, NAMED_US, line) == Some(true)
         };
         // What was told last of the pad or of its stream lasts still, or may not be told again yet.
         let is_state =
@@ -250,12 +248,27 @@ impl Judge {
         let messages = play.messages.0.lock().unwrap();
         for line in &messages[self.told.len()..] {
             self.told.push(now);
-            let Some(state) = STATES.iter().find(|state| state.sentence() == line) else { continue };
-            if !self.causes.explain(now, NAMED_US, *state) {
+            let state = STATES.iter().find(|state| state.sentence() == line);
+            let is_state_untrue = state.is_some_and(|state| !self.causes.explain(now, NAMED_US, *state));
+            // It is about the stream as it was heard last. A stray channel stays one until a finger shows that it is none.
+            let unheard_us = self.heard.map_or(0, |heard| now.us_since(heard));
+            let lasts_us = if line.contains(STRAY) { REPEAT_US } else { TAKEN_BACK_US };
+            if is_state_untrue || self.is_found_so(now, lasts_us + unheard_us, line) == Some(false) {
                 return broken("what is told is so", format!("{line}; {}", self.words(play)));
             }
         }
         Ok(())
+    }
+
+    /// Whether what this line says of the stream, if it does, was so within the last `us`.
+    fn is_found_so(&self, now: HostInstant, us: u64, line: &str) -> Option<bool> {
+        let (_, found) = FOUND.iter().find(|(words, _)| line.contains(words))?;
+        let is_there = self.causes.within(now, us).any(|cause| cause == *found);
+        let was_off = |channel| match line.contains(STRAY) {
+            true => self.causes.was_off_since_sound(now, us, channel),
+            false => self.causes.was_off(now, us, channel),
+        };
+        Some(is_there && named_channel(line).is_none_or(was_off))
     }
 
     /// What the bridge says, and what is wrong.
@@ -283,12 +296,14 @@ const STATES: [State; 11] = [
     State::Paused,
 ];
 
+const STRAY: &str = "reads what no finger makes it read";
+
 /// Words of findings about the stream, and what they are about.
 const FOUND: [(&str, Cause); 5] = [
     ("the pad's clock went on by", Cause::Clock),
     ("frames are lost or damaged", Cause::Loss),
     ("all the time while others change", Cause::Channel),
-    ("reads what no finger makes it read", Cause::Channel),
+    (STRAY, Cause::Channel),
     ("comes a smaller one", Cause::Anew),
 ];
 
@@ -300,5 +315,11 @@ fn is_of_kind(line: &str, finding: &LineFinding) -> bool {
             .map(str::to_owned)
             .collect()
     };
-    words(line) == words(&finding.to_string())
+    words(line) == words(&finding.to_string()) && named_channel(line) == finding.channel()
+}
+
+/// The channel that this line names, if it names one.
+fn named_channel(line: &str) -> Option<usize> {
+    let name = line.split_once("channel ")?.1.split(' ').next()?;
+    CHANNEL_NAMES.iter().position(|known| *known == name)
 }

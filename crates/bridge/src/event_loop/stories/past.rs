@@ -31,12 +31,12 @@ fn holds(steps: &[(u32, Event)]) {
 }
 
 #[test]
-fn a_machine_that_stood_still_does_not_accuse_the_pads_clock() {
+fn a_machine_that_stands_still_right_after_the_pad_came() {
     holds(&[(0, PLUG_IN), (1, Freeze(3_000)), (3_239, Mend), (3_000, Mend)]);
 }
 
 #[test]
-fn samples_that_a_hub_kept_do_not_accuse_the_pads_clock() {
+fn a_hub_that_hands_on_damaged_frames_accuses_no_clock() {
     holds(&[
         (0, PLUG_IN),
         (10, Keep(true)),
@@ -44,6 +44,20 @@ fn samples_that_a_hub_kept_do_not_accuse_the_pads_clock() {
         (111, DamagePermille(300)),
         (0, Mend),
         (3_000, Mend),
+    ]);
+}
+
+#[test]
+fn samples_that_a_hub_kept_from_the_first_on_accuse_no_clock() {
+    holds(&[(0, Rate(100)), (1, PLUG_IN), (0, Keep(true)), (3_000, Lift), (0, Mend)]);
+    holds(&[
+        (0, Rate(250)),
+        (0, Mend),
+        (0, PullOut),
+        (0, PLUG_IN),
+        (0, Keep(true)),
+        (0, Freeze(3_000)),
+        (0, Mend),
     ]);
 }
 
@@ -76,14 +90,25 @@ fn frames_that_are_lost_were_sent() {
 }
 
 #[test]
-fn a_pad_that_falls_silent_is_told_to_be_silent_whatever_its_line_had() {
+fn a_silence_after_a_bad_line_is_named() {
     let silent = [(0, PLUG_IN), (0, DamagePermille(25)), (3_000, Keep(true)), (24_731, PullOut), (0, Mend)];
     holds(&silent);
     holds(&[(0, PLUG_IN), (0, Off(7, Stuck)), (3_000, Stall(true)), (15_687, Mend)]);
 }
 
 #[test]
-fn another_channel_that_stands_is_told_at_once() {
+fn a_silence_after_a_bad_clock_is_named() {
+    holds(&[(0, Pace(3_000)), (0, PLUG_IN), (2_505, Keep(true)), (0, Pace(1_010)), (12_000, Mend)]);
+}
+
+#[test]
+fn a_pad_that_begins_anew_in_its_first_samples_has_its_zero_measured_anew() {
+    let anew = |time_us| Restart { time_us, is_flagged: true, offset: -150_355, text: 3 };
+    holds(&[(0, Rate(250)), (0, PLUG_IN), (7, anew(4_292_825_030)), (0, anew(0)), (1_000, Mend)]);
+}
+
+#[test]
+fn channels_that_stand_one_after_the_other_are_named() {
     holds(&[(0, Mend), (0, Off(3, Stuck)), (13_000, Off(7, Stuck)), (7_000, Mend)]);
 }
 
@@ -109,7 +134,7 @@ fn a_channel_that_drifts_while_the_zero_is_measured_is_no_load() {
 }
 
 #[test]
-fn a_channel_that_answers_again_has_the_zero_measured_anew() {
+fn a_channel_that_was_stuck_as_the_pad_began_answers_under_a_finger() {
     let sleep = Sleep { s: 1, is_powered: false };
     let begun =
         [(0, Rate(100)), (0, PLUG_IN), (0, Off(2, Stuck)), (0, RESTART), (0, Touch(RIGHT)), (0, sleep)];

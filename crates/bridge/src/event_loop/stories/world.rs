@@ -392,6 +392,7 @@ impl World {
             (Cause::Clock, self.play.us_per_ms / 100 != 10 && self.play.us_per_ms != 990),
             (Cause::Frozen, self.frozen_until.is_some()),
         ];
+        self.judge.causes.note_off(now, self.off.map(|off| off.is_some()), self.was_off);
         for (cause, _) in there.into_iter().filter(|(_, is_there)| *is_there) {
             self.judge.causes.note(now, cause);
             if cause != Cause::Touched {

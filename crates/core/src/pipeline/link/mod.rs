@@ -21,6 +21,9 @@ use reading::Reading;
 /// Without a sample for this long the link counts as lost. Everything is released then, well inside 100 ms.
 pub const SILENCE_MAX_US: u64 = 80_000;
 
+/// A pad of which nothing at all came for so long is not slow.
+const QUIET_US: u64 = 1_000_000;
+
 /// Frames may be missing between two samples this close: nobody lifts a finger and presses again in so short a time, and what is
 /// pressed meanwhile shows in the next sample. With one frame in 40 damaged, 15 presses stay 15; where each gap ended a contact they
 /// became 40. It is two periods of the slowest pad: one frame may be missing there, too.
@@ -168,6 +171,11 @@ impl Link {
         now.us_since(first) >= NEWER_US
     }
 
+    /// Whether no sample has come for a second, not even one that cannot be used.
+    pub fn is_quiet(&self, now: HostInstant) -> bool {
+        self.check.heard().is_none_or(|heard| now.us_since(heard) > QUIET_US)
+    }
+
     /// What is wrong with the stream as a whole, if anything is.
     pub const fn finding(&self) -> Option<&LineFinding> {
         self.check.finding()
@@ -232,7 +240,7 @@ impl Link {
         LinkEvent::Sample { at: self.clock.last, reading, fault }
     }
 
-    /// How this sample follows what was heard last. If it is the next one both of that and of frames that came since, it is of these: a pad
+    /// How this sample follows what was heard last. If it goes on both from that and from frames that came since, it is of these: a pad
     /// that began anew as soon as it had begun.
     fn step(&self, now: HostInstant, reading: &Reading) -> SequenceStep {
         let is_of_other = self.other.is_some_and(|other| other.is_followed_by(reading));
@@ -242,7 +250,7 @@ impl Link {
                 step => step,
             },
             Some(run) => match run.step(now, reading) {
-                SequenceStep::Next if is_of_other => SequenceStep::Apart,
+                SequenceStep::Next | SequenceStep::Skipped(_) if is_of_other => SequenceStep::Apart,
                 step => step,
             },
             None if self.clock.set && reading.status.restarted() => SequenceStep::Anew,

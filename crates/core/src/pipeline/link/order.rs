@@ -82,8 +82,9 @@ impl Run {
             return SequenceStep::Again;
         }
         if next.status.restarted() {
-            // The first frame of a run may come again, too.
-            let is_behind = next.time_us <= self.last.time_us;
+            // The first frame of a run may come again, too, after it was forgotten.
+            let is_young = self.newest.iter().any(Option::is_none);
+            let is_behind = next.time_us <= self.last.time_us && !is_young;
             return if is_behind { SequenceStep::Apart } else { SequenceStep::Anew };
         }
         match next.sequence.wrapping_sub(self.last.sequence) {

@@ -42,6 +42,8 @@ pub enum Fault {
     Packed,
     /// The line holds bytes that are zero, as files do that a machine wrote when its power failed.
     Zeros,
+    /// The line holds carriage returns, as files do whose lines end with nothing else.
+    CarriageReturn,
     /// A fault in a last line that has no line end.
     InOpenLine(Box<Self>),
     /// A last line without a line end whose last cell is shorter than those above it.
@@ -134,6 +136,10 @@ impl fmt::Display for Fault {
             ),
             Self::Packed => f.write_str(
                 "the file is compressed, or a workbook; unpack it, or save the table as CSV",
+            ),
+            Self::CarriageReturn => f.write_str(
+                "a carriage return stands inside the line: end lines with a line feed, as \"CSV\" and \"CSV UTF-8\" do and \
+                 \"CSV (Macintosh)\" does not",
             ),
             Self::Zeros => f.write_str(
                 "the line holds bytes that are zero: the file was not written to its end; leave out what begins here",

@@ -51,6 +51,9 @@ impl<R: BufRead> Lines<R> {
             if self.number == 1 && self.line.starts_with("\u{feff}".as_bytes()) {
                 self.line.drain(.."\u{feff}".len());
             }
+            if self.line.trim_ascii_end().contains(&b'\r') {
+                return Err(self.error(Fault::CarriageReturn));
+            }
             if !self.line.trim_ascii().is_empty() {
                 break;
             }

@@ -140,13 +140,15 @@ mod tests {
     }
 
     #[test]
-    fn what_a_power_cut_and_a_packer_leave_is_told() {
+    fn what_a_power_cut_a_packer_and_an_old_macintosh_leave_is_told() {
         for zeros in ["a,b\n1,2\n\0\0\0\0", "a,b\n1,2\n1,\0\0", "a,b\n1,2\n1,2\0\n"] {
             assert!(
                 read(zeros).unwrap_err().starts_with("3: the line holds bytes that are zero"),
                 "{zeros:?}"
             );
         }
+        let macintosh = read("a,b\r1,2\r3,4\r").unwrap_err();
+        assert!(macintosh.starts_with("1: a carriage return stands inside the line"), "{macintosh}");
         let many = ["a,b\n1,2\n".as_bytes(), &[0; 1 << 21]].concat();
         assert!(read(many).unwrap_err().starts_with("3: the line holds bytes that are zero"));
         for packed in

@@ -7,6 +7,7 @@ use std::mem::discriminant;
 
 use serde::Serialize;
 
+use crate::pipeline::link::SILENCE_MAX_US;
 use crate::pipeline::link::reading::Reading;
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
 use crate::time::HostInstant;
@@ -28,6 +29,9 @@ const EVEN: f32 = 3.0;
 
 /// A clock counts microseconds if it shows between half and twice the time that has passed.
 const CLOCK_OFF: u64 = 2;
+
+/// In less time without silences a clock that stood for a moment looks slow.
+const STEADY_MIN_US: u64 = 300_000;
 
 /// A clock that is set anew more often in a look is none.
 const SET_ANEW_MAX: u32 = 8;
@@ -216,11 +220,33 @@ pub struct Arrival {
 /// What the pad's clock showed. Where it falls, it shows nothing: it has few bits, or was set anew.
 #[derive(Clone, Copy, Debug)]
 struct ShownTime {
+    heard: HostInstant,
     last_us: u64,
     us: u64,
+    /// The same without silences, and what passed then: in a silence, or while samples wait, its clock may stand.
+    steady_us: u64,
+    steady_passed_us: u64,
     /// By how much the first of it came late: that may be made up for.
     delay_us: u64,
     samples: u32,
+}
+
+impl ShownTime {
+    const fn beginning(heard: HostInstant, last_us: u64, delay_us: u64) -> Self {
+        Self { heard, last_us, us: 0, steady_us: 0, steady_passed_us: 0, delay_us, samples: 0 }
+    }
+
+    /// Takes the next sample, heard at `now`, which shows that so much has passed.
+    fn take(&mut self, now: HostInstant, last_us: u64, step_us: u64) {
+        let passed_us = now.us_since(self.heard);
+        if passed_us <= SILENCE_MAX_US {
+            self.steady_us = self.steady_us.saturating_add(step_us);
+            self.steady_passed_us += passed_us;
+        }
+        self.us = self.us.saturating_add(step_us);
+        self.samples += 1;
+        (self.heard, self.last_us) = (now, last_us);
+    }
 }
 
 /// Looks at the samples of one stretch of time after the other.
@@ -253,6 +279,8 @@ struct Look {
     /// The last of the samples that go on from one another, and what they show.
     taken: Option<Reading>,
     clock: Option<ShownTime>,
+    /// What all samples show, those of another time, too.
+    all: ShownTime,
     /// What the pad's clock showed in each [`BURST_US`], µs.
     shown_us: [u64; PARTS],
     lost: u32,
@@ -292,23 +320,7 @@ impl LineCheck {
             self.finding = Some(LineFinding::SequenceWraps { largest });
         }
         look.lost = look.lost.saturating_add(arrival.lost);
-        let last_us = reading.time_us;
-        let begins = reading.status.restarted() || reading.sequence < look.last.sequence;
-        let before_us = look.clock.filter(|_| !begins).map_or(last_us, |clock| clock.last_us);
-        let step_us = last_us.saturating_sub(before_us);
-        if arrival.breaks {
-            look.clock_breaks += 1;
-            look.broken_us = look.broken_us.saturating_add(step_us);
-        }
-        if let Some(delay_us) = arrival.delay_us {
-            look.take(reading);
-            let clock = look.clock.unwrap_or(ShownTime { last_us, us: 0, delay_us, samples: 0 });
-            let us = clock.us.saturating_add(step_us);
-            let part = (now.us_since(look.begun) / BURST_US) as usize;
-            let shown_us = &mut look.shown_us[part.min(PARTS - 1)];
-            *shown_us = shown_us.saturating_add(step_us);
-            look.clock = Some(ShownTime { last_us, us, samples: clock.samples + 1, ..clock });
-        }
+        look.show(now, reading, arrival);
         look.sample(now, reading);
     }
 
@@ -360,6 +372,7 @@ impl Look {
             broken_us: 0,
             taken: None,
             clock: None,
+            all: ShownTime::beginning(now, reading.time_us, 0),
             shown_us: [0; PARTS],
             lost: 0,
             has_changed: [false; CHANNELS],
@@ -380,6 +393,25 @@ impl Look {
             }
         }
         (self.heard, self.last) = (now, *reading);
+    }
+
+    /// Follows the pad's clock.
+    fn show(&mut self, now: HostInstant, reading: &Reading, arrival: Arrival) {
+        let last_us = reading.time_us;
+        self.all.take(now, last_us, last_us.saturating_sub(self.all.last_us));
+        let begins = reading.status.restarted() || reading.sequence < self.last.sequence;
+        let before_us = self.clock.filter(|_| !begins).map_or(last_us, |clock| clock.last_us);
+        let step_us = last_us.saturating_sub(before_us);
+        if arrival.breaks {
+            self.clock_breaks += 1;
+            self.broken_us = self.broken_us.saturating_add(step_us);
+        }
+        let Some(delay_us) = arrival.delay_us else { return };
+        self.take(reading);
+        let part = (now.us_since(self.begun) / BURST_US) as usize;
+        let shown_us = &mut self.shown_us[part.min(PARTS - 1)];
+        *shown_us = shown_us.saturating_add(step_us);
+        self.clock.get_or_insert(ShownTime::beginning(now, last_us, delay_us)).take(now, last_us, step_us);
     }
 
     /// Takes a sample that goes on from the last one, or begins anew.
@@ -408,20 +440,20 @@ impl Look {
         let most = |count: u32| 2 * count > self.samples;
         let passed_us = self.heard.us_since(self.begun);
         // An old frame says nothing of the clock, but where most seem to be old it is the clock.
-        let last_us = self.last.time_us;
-        let us = last_us.saturating_sub(self.first.time_us);
-        let all = ShownTime { last_us, us, delay_us: 0, samples: 0 };
+        let all = ShownTime { us: self.all.steady_us, ..self.all };
         let heard = self.clock.filter(|clock| most(clock.samples));
         let (is_clock_heard, shown) = (heard.is_some(), heard.unwrap_or(all));
         let shown_us = shown.us;
         let late_us = shown.delay_us.saturating_add(waited_us);
         let is_too_fast = |shown_us: u64| shown_us > (CLOCK_OFF * passed_us).saturating_add(late_us);
+        let is_too_slow = shown.steady_passed_us >= STEADY_MIN_US
+            && shown.steady_us.saturating_mul(CLOCK_OFF) < shown.steady_passed_us;
         // A clock that jumped was set anew, and by how much says nothing; what it shows beside the jump may be too much still.
         let is_set_anew = (1..=SET_ANEW_MAX).contains(&self.clock_breaks);
         let is_clock_off = if is_set_anew {
             is_clock_heard && is_too_fast(shown_us.saturating_sub(self.broken_us))
         } else {
-            shown_us.saturating_mul(CLOCK_OFF) < passed_us || is_too_fast(shown_us)
+            is_too_slow || is_too_fast(shown_us)
         };
         // What is lost was sent.
         let mean_us = passed_us as f32 / (self.lost + self.samples - 1) as f32;

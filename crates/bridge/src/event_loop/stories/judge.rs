@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 
 use super::super::state;
 use super::super::virtual_time::Play;
-use super::cause::{Cause, Causes};
+use super::cause::Cause::{self, Anew, Channel, Clock, Frozen, Loss, Silent, Under, Unnoticed};
+use super::cause::Causes;
 use crate::state::State;
 use tactpad_core::pipeline::Phase;
 use tactpad_core::pipeline::control::{Code, OutputDevice};
@@ -133,7 +134,7 @@ impl Judge {
     fn may_go_down(&self, play: &Play, code: &Code) -> Result<(), Broken> {
         let now = play.now;
         let was_touched = self.touch_heard.is_some_and(|at| now.us_since(at) <= GHOST_US);
-        let may_be_channel = self.causes.within(now, FAR_US).any(|cause| cause == Cause::Channel);
+        let may_be_channel = self.causes.within(now, FAR_US).any(|cause| cause == Channel);
         if !was_touched && !may_be_channel {
             return broken("nothing goes down without a finger", code);
         }
@@ -262,13 +263,14 @@ impl Judge {
 
     /// Whether what this line says of the stream, if it does, was so within the last `us`.
     fn is_found_so(&self, now: HostInstant, us: u64, line: &str) -> Option<bool> {
-        let (_, found) = FOUND.iter().find(|(words, _)| line.contains(words))?;
-        let is_there = self.causes.within(now, us).any(|cause| cause == *found);
+        let (_, causes) = FOUND.iter().find(|(words, _)| line.contains(words))?;
         let was_off = |channel| match line.contains(STRAY) {
             true => self.causes.was_off_since_sound(now, us, channel),
             false => self.causes.was_off(now, us, channel),
         };
-        Some(is_there && named_channel(line).is_none_or(was_off))
+        Some(self.causes.within(now, us).any(|cause| {
+            causes.contains(&cause) && (cause != Channel || named_channel(line).is_none_or(was_off))
+        }))
     }
 
     /// What the bridge says, and what is wrong.
@@ -298,13 +300,14 @@ const STATES: [State; 11] = [
 
 const STRAY: &str = "reads what no finger makes it read";
 
-/// Words of findings about the stream, and what they are about.
-const FOUND: [(&str, Cause); 5] = [
-    ("the pad's clock went on by", Cause::Clock),
-    ("frames are lost or damaged", Cause::Loss),
-    ("all the time while others change", Cause::Channel),
-    (STRAY, Cause::Channel),
-    ("comes a smaller one", Cause::Anew),
+/// Words of findings about the stream, and what they come of.
+const FOUND: [(&str, &[Cause]); 5] = [
+    ("the pad's clock went on by", &[Clock]),
+    ("frames are lost or damaged", &[Loss, Frozen, Silent]),
+    ("all the time while others change", &[Channel]),
+    // What no finger makes a channel read a finger does that has moved since the zero was measured under it.
+    (STRAY, &[Channel, Under, Unnoticed]),
+    ("comes a smaller one", &[Anew]),
 ];
 
 /// Whether this line tells a finding of this kind, whatever its numbers.

@@ -30,7 +30,7 @@ const EVEN: f32 = 3.0;
 /// A clock counts microseconds if it shows between half and twice the time that has passed.
 const CLOCK_OFF: u64 = 2;
 
-/// In less time without silences a clock that stood for a moment looks slow.
+/// In less time without silences a few samples say nothing of the clock.
 const STEADY_MIN_US: u64 = 300_000;
 
 /// A clock that is set anew more often in a look is none.
@@ -446,15 +446,15 @@ impl Look {
         let shown_us = shown.us;
         let late_us = shown.delay_us.saturating_add(waited_us);
         let is_too_fast = |shown_us: u64| shown_us > (CLOCK_OFF * passed_us).saturating_add(late_us);
-        let is_too_slow = shown.steady_passed_us >= STEADY_MIN_US
-            && shown.steady_us.saturating_mul(CLOCK_OFF) < shown.steady_passed_us;
+        let is_too_slow = shown.steady_us.saturating_mul(CLOCK_OFF) < shown.steady_passed_us;
         // A clock that jumped was set anew, and by how much says nothing; what it shows beside the jump may be too much still.
         let is_set_anew = (1..=SET_ANEW_MAX).contains(&self.clock_breaks);
-        let is_clock_off = if is_set_anew {
+        let is_off = if is_set_anew {
             is_clock_heard && is_too_fast(shown_us.saturating_sub(self.broken_us))
         } else {
             is_too_slow || is_too_fast(shown_us)
         };
+        let is_clock_off = is_off && shown.steady_passed_us >= STEADY_MIN_US;
         // What is lost was sent.
         let mean_us = passed_us as f32 / (self.lost + self.samples - 1) as f32;
         let is_even = (self.widest_us as f32) < EVEN * mean_us;

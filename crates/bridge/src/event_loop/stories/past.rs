@@ -62,6 +62,16 @@ fn samples_that_a_hub_kept_from_the_first_on_accuse_no_clock() {
 }
 
 #[test]
+fn a_pad_that_stops_for_a_moment_has_no_bad_clock() {
+    let old = |age, frames| Repeat { age, frames };
+    holds(&[(0, PLUG_IN), (10, Stall(true)), (100, old(3, 4)), (856, Stall(false)), (100, Lift), (0, Mend)]);
+    let slowly = [(0, PLUG_IN), (0, Rate(100)), (100, Stall(true)), (0, Damage(1))];
+    let again = [(1_000, old(3, 4)), (10, Lift), (856, Stall(false)), (100, Lift), (0, Mend)];
+    holds(&[&slowly[..], &again].concat());
+    holds(&[(0, Mend), (0, Stall(true)), (100, old(66, 2)), (1_000, Stall(true)), (0, Mend)]);
+}
+
+#[test]
 fn an_old_frame_does_not_accuse_the_pads_clock() {
     let repeat = Repeat { age: 66, frames: 4 };
     holds(&[

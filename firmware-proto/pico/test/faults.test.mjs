@@ -1,13 +1,10 @@
 // Faults: each is told by its status bits, what the player holds is released within 100 ms, and the pad plays on without help.
 
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { after, test } from 'node:test';
-import { BYTES, UNPLUGGED, heard, read, replay, tactpad, write } from './capture.mjs';
-import { drawn, pinVolts, playing, seed } from './setting.mjs';
-import { frame, setRate } from './wire.mjs';
+import { test } from 'node:test';
+import { BYTES, UNPLUGGED } from './host/capture.mjs';
+import { events, hearing, isDown, isUp, pressed } from './player.mjs';
+import { drawn, seed, shuffled } from './setting.mjs';
 
 const TOLD_MAX_MS = 100;
 const RECOVERED_MAX_MS = 150;
@@ -16,32 +13,6 @@ const RESTARTED = 0x0400;
 const SUPPLY = 0x0800;
 const ALL = 0x01ff;
 const ofModule = (module) => 0b111 << (3 * module);
-
-const folder = mkdtempSync(join(tmpdir(), 'tactpad-pico-'));
-after(() => rmSync(folder, { recursive: true }));
-const file = (name) => join(folder, name);
-
-/** Channels of a press that Super Mario's profile takes for a direction, in microvolts, and the event. */
-const PRESS = (() => {
-  writeFileSync(file('press.csv'), 'x_mm,y_mm,fx_n,fy_n,fz_n\n18,0,0,0,2\n');
-  tactpad('simulate', '--contacts', file('press.csv'), '--out', file('channels.csv'));
-  return readFileSync(file('channels.csv'), 'utf8').trim().split('\n')[1].split(',').slice(-9).map(Number);
-})();
-const isDown = (event) => event.code === 'ABS_HAT0X' && event.value === 1;
-const isUp = (event) => event.code === 'ABS_HAT0X' && event.value === 0;
-
-const head = (() => {
-  tactpad('record', file('virtual'), '--pad', 'virtual', '--seconds', '0.5');
-  const entries = read(readFileSync(file('virtual')));
-  return entries.slice(0, entries.findIndex((it) => it.kind === BYTES)).map((entry) => ({ ...entry, ns: 0 }));
-})();
-
-/** A pad that is pressed or not, with channels that a fault replaces. */
-function pressed() {
-  const state = { down: false, replaced: new Map() };
-  const { board, host } = playing(() => PRESS.map((uv, channel) => state.replaced.get(channel) ?? pinVolts(state.down ? uv : 0)));
-  return { board, host, state };
-}
 
 /** Faults that the converters, the supply and the host make: how they begin and end, and the bits that tell them. */
 const faults = (random) => {
@@ -76,12 +47,6 @@ const faults = (random) => {
   ];
 };
 
-/** The same in another order. */
-function shuffled(list, random) {
-  const rest = [...list];
-  return list.map(() => rest.splice(Math.floor(random() * rest.length), 1)[0]);
-}
-
 test('every fault is told and released within 100 ms, and the pad plays on without help', () => {
   const random = drawn(seed());
   const play = pressed();
@@ -112,9 +77,8 @@ test('every fault is told and released within 100 ms, and the pad plays on witho
   state.down = false;
   board.run(100);
 
-  writeFileSync(file('faults'), write(heard(head, host.chunks, fromNs, board.ns)));
-  const events = replay(file('faults')).map((event) => ({ ...event, ns: event.t_us * 1e3 }));
-  const between = (low, high, is) => events.filter((event) => event.ns >= low && event.ns <= high && is(event));
+  const told = events(hearing(host.chunks, fromNs, board.ns)).map((event) => ({ ...event, ns: event.t_us * 1e3 }));
+  const between = (low, high, is) => told.filter((event) => event.ns >= low && event.ns <= high && is(event));
   marks.forEach(({ fault, pressNs, beginNs, endNs, recoveredNs, doneNs }, index) => {
     const name = fault?.name ?? 'after all';
     assert.ok(between(pressNs, beginNs ?? untilNs, isDown).length > 0, `${name}: the press before is not heard`);
@@ -174,40 +138,17 @@ test('a pad that is pulled out and put back begins anew', () => {
   before.state.down = true;
   before.board.run(200);
   const pulledNs = before.board.ns - beginNs;
-  const entries = heard(head, before.host.chunks, beginNs, before.board.ns);
+  const entries = hearing(before.host.chunks, beginNs, before.board.ns);
   entries.push({ kind: UNPLUGGED, ns: pulledNs });
 
   const again = pressed();
-  const againNs = again.board.ns;
   again.board.run(900);
   again.state.down = true;
   again.board.run(200);
   assert.deepEqual(again.host.samples.serial.slice(0, 2).map((it) => it.status), [RESTARTED, 0]);
   const shift = pulledNs + 300e6;
-  const late = heard([], again.host.chunks, 0, again.board.ns).filter((entry) => entry.kind === BYTES);
+  const late = hearing(again.host.chunks, 0, again.board.ns).filter((entry) => entry.kind === BYTES);
   entries.push(...late.map((entry) => ({ ...entry, ns: entry.ns + shift })));
-  writeFileSync(file('pulled'), write(entries));
-  const events = replay(file('pulled')).filter((event) => event.code === 'ABS_HAT0X').map((event) => event.value);
-  assert.deepEqual(events.slice(0, 3), [1, 0, 1], 'pressed, released, pressed again');
-  assert.ok(againNs > 0);
-});
-
-test('a program that stands still is restarted, says so, and plays on', () => {
-  const { board, host } = pressed();
-  board.run(100);
-  const { mcu } = board;
-  mcu.sram.set([0xfe, 0xe7], 0x30000); // b .
-  mcu.core.PM = true;
-  mcu.core.PC = 0x20030000;
-  assert.ok(board.run(600, () => board.resets > 0), 'the watchdog does not bite');
-  host.samples.serial = [];
-  host.enumerate();
-  board.run(100);
-  assert.equal(host.names.product, 'tactpad pad 0.1.0 (restarted: stood still)');
-  const samples = host.samples.serial;
-  assert.ok(samples.length > 80);
-  assert.equal(samples[0].status, RESTARTED);
-  assert.ok(samples.slice(1).every((it) => it.status === 0));
-  host.writeSerial(frame(setRate(500)));
-  assert.ok(board.run(20, () => host.replies.serial.length > 0), 'it listens again');
+  const told = events(entries).filter((event) => isDown(event) || isUp(event)).map(isDown);
+  assert.deepEqual(told.slice(0, 3), [true, false, true], 'pressed, released, pressed again');
 });

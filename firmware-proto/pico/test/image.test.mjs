@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { blocks, bootChecksum, faults, flash } from './image.mjs';
-import { Converter, codeOf, crc16 } from './converter.mjs';
+import { blocks, bootChecksum, faults, flash } from './board/image.mjs';
+import { Converter, codeOf, crc16 } from './board/converter.mjs';
 
 const file = readFileSync(process.env.TACTPAD_UF2);
 

@@ -5,8 +5,8 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
-import { BYTES, heard, read, replay, tactpad, write } from './capture.mjs';
-import { IDENTIFY, Receiver, frame } from './wire.mjs';
+import { BYTES, heard, read, replay, tactpad, write } from './host/capture.mjs';
+import { IDENTIFY, Receiver, frame } from './host/wire.mjs';
 import { PICOVOLTS, SECONDS, drawn, pinVolts, playing, seed } from './setting.mjs';
 
 /** Events may be so far apart, in microseconds. */

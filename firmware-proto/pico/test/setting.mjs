@@ -1,7 +1,7 @@
 // What the tests share: voltages at the converters' pins, a board that is set up, drawn numbers.
 
-import { Board } from './chip.mjs';
-import { Host } from './host.mjs';
+import { Board } from './board/chip.mjs';
+import { Host } from './host/host.mjs';
 
 /** Excitation of the board, and the one for which the wire's microvolts are told, in volts. */
 const EXCITATION_V = 2.5;
@@ -31,6 +31,12 @@ export function drawn(seed) {
     state ^= state << 5;
     return (state >>> 0) / 2 ** 32;
   };
+}
+
+/** The same in another order. */
+export function shuffled(list, random) {
+  const rest = [...list];
+  return list.map(() => rest.splice(Math.floor(random() * rest.length), 1)[0]);
 }
 
 /** A seed, told so that a failure can be had again: TACTPAD_SEED. */

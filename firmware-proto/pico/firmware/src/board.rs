@@ -1,11 +1,13 @@
 //! The board: its pins, its clocks, and what of the chip each part of the program gets.
 
+use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
+use pad::light::State;
 use pad::rate::SYSTEM_HZ;
 use rp2040_hal as hal;
 
 use hal::clocks::ClocksManager;
-use hal::fugit::{HertzU32, RateExtU32};
+use hal::fugit::{ExtU32, HertzU32, RateExtU32};
 use hal::gpio::{
     FunctionNull, FunctionPwm, FunctionSioInput, FunctionSioOutput, FunctionSpi, Pin, PullNone, PullUp,
 };
@@ -34,6 +36,9 @@ const LIGHT_PIN: u8 = 25;
 /// The clock for the converters leaves on pin 10: the first output of this PWM slice.
 pub(crate) const CLOCK_SLICE: usize = 5;
 
+/// A program that does not come round in this time is restarted, in milliseconds.
+const WATCHDOG_MS: u32 = 500;
+
 /// What the parts of the program need of the chip.
 pub(crate) struct Chip {
     /// Restarts the chip when it is not fed.
@@ -49,8 +54,10 @@ impl Chip {
     pub(crate) fn take() -> Option<Self> {
         let mut p = pac::Peripherals::take()?;
         let mut watchdog = Watchdog::new(p.WATCHDOG);
-        let crystal = setup_xosc_blocking(p.XOSC, CRYSTAL_HZ.Hz()).ok()?;
+        // The clock without the crystal is no faster than that with it, so the time is no shorter. It guards the crystal's start, too.
         watchdog.enable_tick_generation((CRYSTAL_HZ / 1_000_000) as u8);
+        watchdog.start(WATCHDOG_MS.millis());
+        let crystal = setup_xosc_blocking(p.XOSC, CRYSTAL_HZ.Hz()).ok()?;
         let mut clocks = ClocksManager::new(p.CLOCKS);
         let system =
             PLLConfig { vco_freq: HertzU32::Hz(12 * SYSTEM_HZ), refdiv: 1, post_div1: 4, post_div2: 3 };
@@ -92,6 +99,16 @@ impl Chip {
         let timer = hal::Timer::new(p.TIMER, &mut p.RESETS, &clocks);
         let usb = UsbBus::new(p.USBCTRL_REGS, p.USBCTRL_DPRAM, clocks.usb_clock, true, &mut p.RESETS);
         Some(Self { watchdog, timer, usb: Some(UsbBusAllocator::new(usb)) })
+    }
+
+    /// Shows a state by the light for a second, and does nothing else meanwhile.
+    pub(crate) fn show_a_second(&mut self, state: State) {
+        for time_ms in 0..1_000 {
+            self.watchdog.feed();
+            light(state.is_lit(time_ms));
+            self.timer.delay_ms(1);
+        }
+        light(false);
     }
 }
 

@@ -29,7 +29,7 @@ export function codeOf(volts, gain) {
 const word = (value) => [(value >> 8) & 0xff, value & 0xff, 0];
 
 export class Converter {
-  /** `inputs(seconds)` gives the three differential voltages; `onReady(low)` is told the level of data-ready. */
+  /** `inputs()` gives the three differential voltages now; `onReady(low)` is told the level of data-ready. */
   constructor(clock, inputs, onReady = () => {}) {
     this.clock = clock;
     this.inputs = inputs;
@@ -79,8 +79,7 @@ export class Converter {
 
   convert() {
     const gain = (channel) => 2 ** ((this.registers[REGISTERS.GAIN1] >> (4 * channel)) & 7);
-    const volts = this.inputs(this.clock.nanos / 1e9);
-    const codes = volts.map((volt, channel) => codeOf(volt, gain(channel)));
+    const codes = this.inputs().map((volt, channel) => codeOf(volt, gain(channel)));
     // Two conversions are kept; of more, the newest.
     this.fifo = [...this.fifo.slice(-1), codes];
     this.fresh = (1 << CHANNELS) - 1;

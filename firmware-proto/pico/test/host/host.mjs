@@ -140,9 +140,9 @@ export class Host {
   }
 
   /** Sets the device up, as a system does that knows its classes, and opens its serial port. */
-  enumerate({ open = true } = {}) {
+  enumerate({ open = true, settleMs = 1 } = {}) {
     if (!this.board.run(200, () => this.wasReset)) throw new Error('the device does not show itself on the bus');
-    this.board.run(1);
+    this.board.run(settleMs);
     this.control(0x00, 5, 1, 0);
     this.device = this.control(0x80, 6, 0x0100, 0, 18);
     const total = this.control(0x80, 6, 0x0200, 0, 9).readUInt16LE(2);

@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after } from 'node:test';
 import { BYTES, heard, read, replay, tactpad, write } from './host/capture.mjs';
-import { pinVolts, playing } from './setting.mjs';
+import { drawn, pinVolts, playing } from './setting.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'tactpad-pico-'));
 after(() => rmSync(folder, { recursive: true }));
@@ -17,6 +17,9 @@ const PRESS = (() => {
   tactpad('simulate', '--contacts', file('press.csv'), '--out', file('channels.csv'));
   return readFileSync(file('channels.csv'), 'utf8').trim().split('\n')[1].split(',').slice(-9).map(Number);
 })();
+
+/** What the channels tremble by, in microvolts. */
+const NOISE_UV = 10;
 
 /** The event of a press, and of its end. */
 export const isDown = (event) => event.code === 'ABS_HAT0X' && event.value === 1;
@@ -32,7 +35,9 @@ const HEAD = (() => {
 /** A pad that is pressed while `state.down`, with voltages at single channels that a fault has `state.replaced`. */
 export function pressed() {
   const state = { down: false, replaced: new Map() };
-  const { board, host } = playing(() => PRESS.map((uv, channel) => state.replaced.get(channel) ?? pinVolts(state.down ? uv : 0)));
+  const noise = drawn(1);
+  const volts = (uv) => pinVolts((state.down ? uv : 0) + NOISE_UV * (noise() - 0.5));
+  const { board, host } = playing(() => PRESS.map((uv, channel) => state.replaced.get(channel) ?? volts(uv)));
   return { board, host, state };
 }
 

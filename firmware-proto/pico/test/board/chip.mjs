@@ -173,10 +173,20 @@ export class Board {
     mcu.core.PC = 0x20041f00;
   }
 
+  /** The supply goes, or comes: time goes on, and nothing happens while it is off. */
+  power(on) {
+    this.off = !on;
+    if (on) this.start(null);
+  }
+
   /** Runs until `done` says so, or for so many milliseconds of simulated time; says whether it was done. */
   run(ms, done = () => false) {
     const endNs = this.ns + ms * 1e6;
     while (this.ns < endNs) {
+      if (this.off) {
+        this.startedNs = endNs - this.simulator.clock.nanos;
+        return false;
+      }
       const { mcu, simulator, faults } = this;
       const { core } = mcu;
       const { clock } = simulator;

@@ -65,10 +65,10 @@ export function heard(head, chunks, fromNs, toNs) {
   const look = (untilNs) => {
     for (lastNs += LOOK_NS; lastNs < untilNs; lastNs += LOOK_NS) entries.push({ kind: TIMEOUT, ns: lastNs - fromNs });
   };
-  for (const { ns, bytes } of chunks) {
+  for (const { ns, bytes, kind = BYTES } of chunks) {
     if (ns < fromNs || ns > toNs) continue;
     look(ns);
-    entries.push({ kind: BYTES, ns: ns - fromNs, payload: bytes });
+    entries.push({ kind, ns: ns - fromNs, payload: bytes });
     lastNs = ns;
   }
   look(toNs);

@@ -1,7 +1,9 @@
 // What the tests share: voltages at the converters' pins, a board that is set up, drawn numbers.
 
+import assert from 'node:assert/strict';
 import { Board } from './board/chip.mjs';
 import { Host } from './host/host.mjs';
+import { frame, setOutput } from './host/wire.mjs';
 
 /** Excitation of the board, and the one for which the wire's microvolts are told, in volts. */
 const EXCITATION_V = 2.5;
@@ -20,6 +22,13 @@ export function playing(inputs) {
   host.enumerate();
   board.run(20);
   return { board, host };
+}
+
+/** Has the pad decode on its own. */
+export function askForContacts(board, host) {
+  host.writeSerial(frame(setOutput(1)));
+  const begun = () => ['serial', 'hid'].every((port) => host.samples[port].at(-1)?.kind === 'contact');
+  assert.ok(board.run(20, begun), 'no contacts come');
 }
 
 /** Numbers from 0 to 1, the same for the same seed (xorshift). */

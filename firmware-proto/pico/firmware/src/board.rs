@@ -30,6 +30,9 @@ pub(crate) const READY_PIN: u8 = 8;
 /// Synchronization and reset of all converters: low acts.
 pub(crate) const SYNC_PIN: u8 = 9;
 
+/// A jumper from here to ground: the pad sends contacts from its start.
+const CONTACTS_PIN: u8 = 22;
+
 /// The light on the board.
 const LIGHT_PIN: u8 = 25;
 
@@ -77,6 +80,7 @@ impl Chip {
         let _ = pins.gpio7.into_push_pull_output_in_state(hal::gpio::PinState::High);
         let mut ready: Pin<_, FunctionSioInput, PullUp> = pins.gpio8.reconfigure();
         let _ = ready.is_high();
+        let _: Pin<_, FunctionSioInput, PullUp> = pins.gpio22.reconfigure();
         let _ = pins.gpio9.into_push_pull_output_in_state(hal::gpio::PinState::High);
         let _: Pin<_, FunctionPwm, PullNone> = pins.gpio10.reconfigure();
         // The excitation, which the chip's own converter reads.
@@ -135,6 +139,12 @@ pub(crate) fn drive(pin: u8, high: bool) {
     } else {
         sio.gpio_out_clr().write(|w| unsafe { w.bits(bit) });
     }
+}
+
+/// Whether the jumper for contacts is set.
+pub(crate) fn asks_for_contacts() -> bool {
+    // SAFETY: a register that is only read.
+    unsafe { (*pac::SIO::ptr()).gpio_in().read().bits() & (1 << CONTACTS_PIN) == 0 }
 }
 
 /// Turns the light on or off.

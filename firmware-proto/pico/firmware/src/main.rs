@@ -21,7 +21,7 @@ use firmware_proto::frame::WireError;
 use firmware_proto::identity::SerialNumber;
 use pad::frames::FrameReader;
 use pad::light::State;
-use pad::pad::{Board, Pad, digits};
+use pad::pad::{Board, Output, Pad, digits};
 use pad::rate::{RATE_DEFAULT_HZ, Rate};
 
 use crate::board::Chip;
@@ -86,7 +86,11 @@ fn main() -> ! {
     let mut ports = Ports::new(&allocator, serial_text, product.as_str());
 
     let measure = Measure::new();
-    let mut pad = Pad::new(serial_number, rate);
+    // What a host chose holds over restarts by the chip itself.
+    let chosen = restart.and_then(|it| Output::of(it.output));
+    let output =
+        chosen.unwrap_or(if board::asks_for_contacts() { Output::Contacts } else { Output::Channels });
+    let mut pad = Pad::new(serial_number, rate, output);
     let mut reader = FrameReader::default();
     let mut converters = Converters::new(chip.timer);
     let mut board =
@@ -104,19 +108,23 @@ fn main() -> ! {
             let codes = reader.read(&taken.frames);
             well &= !codes.restart;
             pad.skip(taken.missed);
-            ports.send(&pad.sample(&codes, taken.time_us, &board), pad.rate());
+            ports.send(&pad.message(&codes, taken.time_us, &board), pad.rate());
             (times.sampled_us, times.told_us) = (now_us, now_us);
         } else if now_us > times.sampled_us + LATE_MAX_US + 2 * u64::from(pad.rate().period_us()) {
             well = false;
             if now_us >= times.told_us + SILENT_PERIOD_US {
-                ports.send(&pad.sample(&reader.silence(), now_us, &board), pad.rate());
+                ports.send(&pad.message(&reader.silence(), now_us, &board), pad.rate());
                 times.told_us = now_us;
             }
         }
 
-        let rate = pad.rate();
+        let (rate, output) = (pad.rate(), pad.output());
         while let Some(command) = ports.command() {
             obey(&mut pad, &mut ports, command, now_us);
+        }
+        if pad.output() != output {
+            restart::keep_output(pad.output() as u16);
+            ports.begin_anew();
         }
         if ports.asks_for_bootloader() {
             restart::into_bootloader();

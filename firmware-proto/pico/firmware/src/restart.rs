@@ -51,6 +51,8 @@ pub(crate) struct Restart {
     pub(crate) why: Why,
     /// How many there were since power-on, or since the program had run well for a while.
     pub(crate) in_a_row: u32,
+    /// What the pad sent before it, as a host chose it; no number of the wire if none did.
+    pub(crate) output: u16,
 }
 
 /// The restart that began this run; `None` after power-on. It is told once.
@@ -68,7 +70,16 @@ pub(crate) fn last() -> Option<Restart> {
     let before = if why.is_some() { watchdog.scratch2().read().bits() } else { 0 };
     let in_a_row = before.saturating_add(u32::from(why.is_some()));
     watchdog.scratch2().write(|w| unsafe { w.bits(in_a_row) });
-    why.map(|why| Restart { why, in_a_row })
+    let Some(why) = why else {
+        keep_output(u16::MAX);
+        return None;
+    };
+    Some(Restart { why, in_a_row, output: watchdog.scratch3().read().bits() as u16 })
+}
+
+/// Keeps what a host chose that the pad sends, for the next start if that is a restart.
+pub(crate) fn keep_output(output: u16) {
+    watchdog().scratch3().write(|w| unsafe { w.bits(u32::from(output)) });
 }
 
 /// The program has run well for a while: the next restart is the first again.

@@ -13,6 +13,7 @@ const { Simulator, ConsoleLogger, LogLevel } = createRequire(`${process.env.TACT
 const SELECT_PINS = [5, 6, 7];
 const READY_PIN = 8;
 const SYNC_PIN = 9;
+const CONTACTS_PIN = 22;
 const LIGHT_PIN = 25;
 const CLOCK_SLICE = 5;
 const EXCITATION_INPUT = 0;
@@ -53,6 +54,8 @@ export class Board {
     this.temperatureC = 25;
     this.readyNs = [];
     this.resets = 0;
+    /** The jumper for contacts is set. */
+    this.jumper = false;
     this.bootloader = false;
     /** What the flash holds. */
     this.image = image;
@@ -111,6 +114,8 @@ export class Board {
       if (state === 0) lowNs = clock.nanos;
       else for (const converter of converters) converter.syncPulse(clock.nanos - lowNs);
     });
+    // Pulled up, unless a jumper is set.
+    mcu.gpio[CONTACTS_PIN].setInputValue(!this.jumper);
     const spi = mcu.spi[0];
     let answer = 0xff;
     const done = clock.createAlarm(() => spi.completeTransmit(answer));

@@ -19,8 +19,8 @@ export function tactpad(...args) {
 }
 
 /** The events that a capture comes to. */
-export function replay(file) {
-  return tactpad('replay', file).split('\n').filter(Boolean).map((line) => JSON.parse(line));
+export function replay(file, ...options) {
+  return tactpad('replay', file, ...options).split('\n').filter(Boolean).map((line) => JSON.parse(line));
 }
 
 /** The entries of a capture: kind, time and payload. */

@@ -101,7 +101,7 @@ export class Host {
   }
 
   take(port, it) {
-    if (it.kind === 'sample') this.samples[port].push({ ...it, ns: this.board.ns });
+    if (it.kind === 'sample' || it.kind === 'contact') this.samples[port].push({ ...it, ns: this.board.ns });
     else this.replies[port].push(it);
   }
 

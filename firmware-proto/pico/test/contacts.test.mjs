@@ -2,8 +2,6 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Board } from './board/chip.mjs';
-import { Host } from './host/host.mjs';
 import { IDENTIFY, frame, setOutput, setRate } from './host/wire.mjs';
 import { events, hearing, isDown, isUp, pressed } from './player.mjs';
 import { askForContacts, playing } from './setting.mjs';
@@ -55,12 +53,7 @@ test('a command chooses contacts, and the stream says so', () => {
 });
 
 test('a jumper chooses contacts from the start', () => {
-  const board = new Board();
-  board.jumper = true;
-  board.power(true);
-  const host = new Host(board);
-  host.enumerate();
-  board.run(20);
+  const { host } = playing(undefined, { jumper: true });
   for (const port of ['serial', 'hid']) assert.equal(host.samples[port][0].kind, 'contact');
 });
 

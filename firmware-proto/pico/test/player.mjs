@@ -33,11 +33,11 @@ const HEAD = (() => {
 })();
 
 /** A pad that is pressed while `state.down`, with voltages at single channels that a fault has `state.replaced`. */
-export function pressed() {
+export function pressed(options) {
   const state = { down: false, replaced: new Map() };
   const noise = drawn(1);
   const volts = (uv) => pinVolts((state.down ? uv : 0) + NOISE_UV * (noise() - 0.5));
-  const { board, host } = playing(() => PRESS.map((uv, channel) => state.replaced.get(channel) ?? volts(uv)));
+  const { board, host } = playing(() => PRESS.map((uv, channel) => state.replaced.get(channel) ?? volts(uv)), options);
   return { board, host, state };
 }
 

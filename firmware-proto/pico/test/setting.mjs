@@ -16,8 +16,8 @@ export const PICOVOLTS = ((2.4 / 32 / 2 ** 24) * 4 * (TOLD_FOR_V / EXCITATION_V)
 export const pinVolts = (uv) => (uv * 1e-6 / 4) * (EXCITATION_V / TOLD_FOR_V);
 
 /** A board with these voltages at its pins, set up by a host, and running. */
-export function playing(inputs) {
-  const board = new Board(inputs);
+export function playing(inputs, options) {
+  const board = new Board(inputs, options);
   const host = new Host(board);
   host.enumerate();
   board.run(20);

@@ -47,15 +47,17 @@ class Registers {
 }
 
 export class Board {
-  /** `inputs(seconds)` gives the nine differential voltages at the converters' pins, in the wire's order. */
-  constructor(inputs = () => new Array(9).fill(0)) {
+  /**
+   * `inputs(seconds)` gives the nine differential voltages at the converters' pins, in the wire's order; `jumper`: that for contacts is
+   * set.
+   */
+  constructor(inputs = () => new Array(9).fill(0), { jumper = false } = {}) {
     this.inputs = inputs;
     this.excitationV = 2.5;
     this.temperatureC = 25;
     this.readyNs = [];
     this.resets = 0;
-    /** The jumper for contacts is set. */
-    this.jumper = false;
+    this.jumper = jumper;
     this.bootloader = false;
     /** What the flash holds. */
     this.image = image;

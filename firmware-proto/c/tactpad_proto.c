@@ -243,7 +243,7 @@ static enum tactpad_event read_command(const uint8_t head[4], size_t len, bool p
         return TACTPAD_NEWER_VERSION;
     command->kind = head[1];
     command->value = 0;
-    if (head[1] == TACTPAD_SET_RATE || head[1] == TACTPAD_BLINK)
+    if (head[1] == TACTPAD_SET_RATE || head[1] == TACTPAD_BLINK || head[1] == TACTPAD_SET_OUTPUT)
         wanted += 2;
     else if (head[1] != TACTPAD_IDENTIFY)
         return TACTPAD_UNKNOWN_KIND;

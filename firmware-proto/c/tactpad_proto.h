@@ -117,7 +117,10 @@ void tactpad_report_acknowledgement(uint8_t command_kind, enum tactpad_result re
 extern const uint8_t tactpad_report_descriptor[TACTPAD_REPORT_DESCRIPTOR_LEN];
 
 /* Kinds of commands. */
-enum { TACTPAD_IDENTIFY = 0x81, TACTPAD_SET_RATE = 0x82, TACTPAD_BLINK = 0x83 };
+enum { TACTPAD_IDENTIFY = 0x81, TACTPAD_SET_RATE = 0x82, TACTPAD_BLINK = 0x83, TACTPAD_SET_OUTPUT = 0x84 };
+
+/* What set output asks for. */
+enum { TACTPAD_OUTPUT_CHANNELS = 0, TACTPAD_OUTPUT_CONTACTS = 1 };
 
 /* What came from the host. */
 enum tactpad_event {
@@ -138,7 +141,7 @@ enum tactpad_event {
 /* A command, or the kind of an unknown one. */
 struct tactpad_command {
     uint8_t kind;
-    /* Set rate: hertz. Blink: milliseconds. Else 0. */
+    /* Set rate: hertz. Blink: milliseconds. Set output: what is asked for. Else 0. */
     uint16_t value;
 };
 

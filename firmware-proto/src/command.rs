@@ -15,12 +15,24 @@ pub enum Command {
         /// How long, in milliseconds; 0 stops it.
         duration_ms: u16,
     },
+    /// Send channels or contacts from now on; answered by an acknowledgement.
+    SetOutput {
+        /// [`OUTPUT_CHANNELS`] or [`OUTPUT_CONTACTS`]. Whether the pad can do it is for the pad to say: any value arrives.
+        output: u16,
+    },
 }
+
+/// The pad sends its channels.
+pub const OUTPUT_CHANNELS: u16 = 0;
+
+/// The pad decodes on its own and sends contacts.
+pub const OUTPUT_CONTACTS: u16 = 1;
 
 impl Command {
     pub(crate) const IDENTIFY: u8 = 0x81;
     pub(crate) const SET_RATE: u8 = 0x82;
     pub(crate) const BLINK: u8 = 0x83;
+    pub(crate) const SET_OUTPUT: u8 = 0x84;
 
     /// The command's kind byte, which its acknowledgement names.
     #[must_use]
@@ -29,6 +41,7 @@ impl Command {
             Self::Identify => Self::IDENTIFY,
             Self::SetRate { .. } => Self::SET_RATE,
             Self::Blink { .. } => Self::BLINK,
+            Self::SetOutput { .. } => Self::SET_OUTPUT,
         }
     }
 }

@@ -152,6 +152,7 @@ impl Body for Command {
             Self::Identify => {}
             Self::SetRate { rate_hz } => out.put(&rate_hz.to_le_bytes()),
             Self::Blink { duration_ms } => out.put(&duration_ms.to_le_bytes()),
+            Self::SetOutput { output } => out.put(&output.to_le_bytes()),
         }
     }
 
@@ -160,6 +161,7 @@ impl Body for Command {
             Self::IDENTIFY => Some(Self::Identify),
             Self::SET_RATE => payload.u16().map(|rate_hz| Self::SetRate { rate_hz }),
             Self::BLINK => payload.u16().map(|duration_ms| Self::Blink { duration_ms }),
+            Self::SET_OUTPUT => payload.u16().map(|output| Self::SetOutput { output }),
             _ => return Err(WireError::UnknownKind(kind)),
         };
         command.ok_or(WireError::Damaged)
@@ -187,7 +189,7 @@ mod tests {
 
     #[test]
     fn a_command_is_no_message() {
-        for kind in [0x81, 0x82, 0x83] {
+        for kind in [0x81, 0x82, 0x83, 0x84] {
             assert_eq!(read(&[1, kind, 0, 0]), Err(WireError::UnknownKind(kind)));
         }
     }

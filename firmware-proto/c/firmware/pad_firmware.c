@@ -109,6 +109,11 @@ static void obey(struct pad *pad, const struct tactpad_command *command)
     case TACTPAD_BLINK:
         acknowledge(pad, command->kind, blink(pad, command->value));
         break;
+    case TACTPAD_SET_OUTPUT:
+        /* It does not decode on its own. */
+        acknowledge(pad, command->kind,
+                    command->value == TACTPAD_OUTPUT_CHANNELS ? TACTPAD_DONE : TACTPAD_REFUSED);
+        break;
     }
 }
 

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { IDENTIFY, blink, frame, setRate } from './wire.mjs';
+import { IDENTIFY, blink, frame, setRate } from './host/wire.mjs';
 import { PICOVOLTS, SECONDS, drawn, playing, seed } from './setting.mjs';
 
 const SPECIFICATION = new URL('../../README.md', import.meta.url);

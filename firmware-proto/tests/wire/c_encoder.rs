@@ -106,6 +106,7 @@ fn told(result: &Result<Command, WireError>) -> String {
         Ok(Command::Identify) => command(0x81, 0),
         Ok(Command::SetRate { rate_hz }) => command(0x82, rate_hz),
         Ok(Command::Blink { duration_ms }) => command(0x83, duration_ms),
+        Ok(Command::SetOutput { output }) => command(0x84, output),
         Err(WireError::Damaged) => "damaged".into(),
         Err(WireError::TooLong) => "too_long".into(),
         Err(WireError::UnknownKind(kind)) => format!("unknown_kind:{kind:02x}"),
@@ -153,7 +154,7 @@ fn golden_frames_are_received_alike() {
     let parts = [command_frames(), message_frames(), refused_frames(), command_frames()].concat();
     let calls = receiving(&parts);
     let saying = |word: &str| calls.iter().filter(|(_, told)| told.starts_with(word)).count();
-    assert_eq!((saying("command"), saying("too_long"), saying("newer_version")), (15, 1, 2));
+    assert_eq!((saying("command"), saying("too_long"), saying("newer_version")), (19, 1, 2));
     assert_answers("received", &calls);
 }
 
@@ -187,7 +188,7 @@ fn rough_streams_are_received_alike() {
     let mut random = Random(21);
     let parts: Vec<_> = (0..20_000).map(|_| rough_bytes(&mut random)).collect();
     let calls = receiving(&parts);
-    for word in ["command:81", "command:82", "command:83", "damaged", "too_long"] {
+    for word in ["command:81", "command:82", "command:83", "command:84", "damaged", "too_long"] {
         assert!(calls.iter().filter(|(_, told)| told.contains(word)).count() > 100, "{word}");
     }
     assert_answers("rough", &calls);

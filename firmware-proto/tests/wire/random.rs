@@ -95,9 +95,10 @@ impl Random {
     }
 
     pub(crate) fn command(&mut self) -> Command {
-        match self.below(3) {
+        match self.below(4) {
             0 => Command::Identify,
             1 => Command::SetRate { rate_hz: self.spread() as u16 },
+            2 => Command::SetOutput { output: self.spread() as u16 },
             _ => Command::Blink { duration_ms: self.spread() as u16 },
         }
     }

@@ -135,6 +135,7 @@ impl Vector {
             "identify" => Command::Identify,
             "set_rate" => Command::SetRate { rate_hz: self.number("rate_hz") },
             "blink" => Command::Blink { duration_ms: self.number("duration_ms") },
+            "set_output" => Command::SetOutput { output: self.number("output") },
             other => panic!("command {other}"),
         }
     }
@@ -210,7 +211,7 @@ fn messages_both_ways() {
 #[test]
 fn commands_both_ways() {
     let vectors = vectors(COMMANDS);
-    assert_eq!(vectors.len(), 7);
+    assert_eq!(vectors.len(), 9);
     let mut receiver = CommandReceiver::new();
     for vector in vectors {
         let command = vector.command();

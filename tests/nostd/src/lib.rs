@@ -154,6 +154,7 @@ const fn value(command: &Command) -> u16 {
         Command::Identify => 0,
         Command::SetRate { rate_hz } => rate_hz,
         Command::Blink { duration_ms } => duration_ms,
+        Command::SetOutput { output } => output,
     }
 }
 

@@ -1,7 +1,7 @@
 //! The emulated firmware: samples at its rate, answers to commands, frames on the wire.
 
 use arrayvec::ArrayVec;
-use firmware_proto::command::{AckResult, Command};
+use firmware_proto::command::{AckResult, Command, OUTPUT_CHANNELS};
 use firmware_proto::frame::{Message, WireError};
 use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::{CommandReceiver, encode_message};
@@ -178,6 +178,9 @@ impl VirtualPad {
             Command::SetRate { rate_hz } => self.set_rate(rate_hz),
             // There is no light to see; the command counts as done.
             Command::Blink { .. } => AckResult::Done,
+            Command::SetOutput { output: OUTPUT_CHANNELS } => AckResult::Done,
+            // It does not decode on its own.
+            Command::SetOutput { .. } => AckResult::Refused,
         };
         Message::Acknowledgement { command: command.kind(), result }
     }

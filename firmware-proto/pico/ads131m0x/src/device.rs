@@ -148,6 +148,7 @@ mod tests {
 
     use super::*;
     use crate::config::{Gain, Oversampling};
+    use crate::frame::Status;
 
     const CONFIG: Config = Config { gain: Gain::X32, oversampling: Oversampling::X4096 };
 
@@ -184,29 +185,54 @@ mod tests {
         Mock::new(&frames.iter().flat_map(frame).collect::<Vec<_>>())
     }
 
+    /// A bus on which the frames of this part of frames.txt pass.
+    fn examples(part: &str) -> Mock<u8> {
+        let text = include_str!("../frames.txt").split("## ").find(|it| it.starts_with(part)).unwrap();
+        let bytes = |line: &str| -> Vec<u8> {
+            let digits = line.chars().filter(char::is_ascii_hexdigit).collect::<Vec<_>>();
+            let byte = |pair: &[char]| u8::from_str_radix(&pair.iter().collect::<std::string::String>(), 16);
+            digits.chunks(2).map(|pair| byte(pair).unwrap()).collect()
+        };
+        let lines = |mark| text.lines().filter_map(move |line| line.strip_prefix(mark)).map(bytes);
+        let frames = lines("> ").zip(lines("< ")).flat_map(|(out, came)| {
+            [
+                Transaction::transaction_start(),
+                Transaction::transfer_in_place(out, came),
+                Transaction::transaction_end(),
+            ]
+        });
+        Mock::new(&frames.collect::<Vec<_>>())
+    }
+
     #[test]
-    fn the_answer_to_a_reset_comes_in_the_next_frame() {
-        let mut bus = bus(&[(&[RESET], 0x0500), (&[NULL], 0xFF23)]);
+    fn a_reset_is_that_of_the_examples() {
+        let mut bus = examples("m03 reset");
         assert_eq!(Device::<_, 3>::new(bus.clone()).reset(), Ok(()));
+        bus.done();
+        let mut bus = examples("m08 reset");
+        assert_eq!(Device::<_, 8>::new(bus.clone()).reset(), Ok(()));
         bus.done();
     }
 
     #[test]
-    fn registers_are_written_at_once_and_read_back() {
-        let mut bus = bus(&[
-            (&[0xA000], 0x0500),
-            (&[NULL], 0x2300),
-            (&[0x6102, 0x1110, 0x0716, 0x0555], 0x0500),
-            (&[NULL], 0x4102),
-            (&[0xA100], 0x0100),
-            (&[NULL], 0x1110),
-            (&[0xA180], 0x0100),
-            (&[NULL], 0x0716),
-            (&[0xA200], 0x0100),
-            (&[NULL], 0x0555),
-        ]);
+    fn registers_are_written_and_read_back_as_in_the_examples() {
+        let mut bus = examples("m03 configure");
         assert_eq!(Device::<_, 3>::new(bus.clone()).configure(CONFIG), Ok(()));
         bus.done();
+        let mut bus = examples("m08 identify");
+        assert_eq!(Device::<_, 8>::new(bus.clone()).register(0), Ok(0x2800));
+        bus.done();
+    }
+
+    #[test]
+    fn codes_are_those_of_the_examples() {
+        let mut bus = examples("m03 codes");
+        let mut device = Device::<_, 3>::new(bus.clone());
+        let frames = [(); 3].map(|()| device.exchange(&[NULL]).unwrap());
+        bus.done();
+        assert_eq!(frames[0], Frame { answer: 0x0107, codes: [8_388_607, 1, -8_388_608] });
+        assert_eq!(frames[1].codes, [-1, 0, 8_388_607]);
+        assert!(Status(frames[1].answer).all_new(3) && !Status(frames[2].answer).all_new(3));
     }
 
     #[test]

@@ -1,11 +1,13 @@
 //! The board: its pins, its clocks, and what of the chip each part of the program gets.
 
+use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
+use pad::light::State;
 use pad::rate::SYSTEM_HZ;
 use rp2040_hal as hal;
 
 use hal::clocks::ClocksManager;
-use hal::fugit::{HertzU32, RateExtU32};
+use hal::fugit::{ExtU32, HertzU32, RateExtU32};
 use hal::gpio::{
     FunctionNull, FunctionPwm, FunctionSioInput, FunctionSioOutput, FunctionSpi, Pin, PullNone, PullUp,
 };
@@ -28,11 +30,17 @@ pub(crate) const READY_PIN: u8 = 8;
 /// Synchronization and reset of all converters: low acts.
 pub(crate) const SYNC_PIN: u8 = 9;
 
+/// A jumper from here to ground: the pad sends contacts from its start.
+const CONTACTS_PIN: u8 = 22;
+
 /// The light on the board.
 const LIGHT_PIN: u8 = 25;
 
 /// The clock for the converters leaves on pin 10: the first output of this PWM slice.
 pub(crate) const CLOCK_SLICE: usize = 5;
+
+/// A program that does not come round in this time is restarted, in milliseconds.
+const WATCHDOG_MS: u32 = 500;
 
 /// What the parts of the program need of the chip.
 pub(crate) struct Chip {
@@ -49,8 +57,10 @@ impl Chip {
     pub(crate) fn take() -> Option<Self> {
         let mut p = pac::Peripherals::take()?;
         let mut watchdog = Watchdog::new(p.WATCHDOG);
-        let crystal = setup_xosc_blocking(p.XOSC, CRYSTAL_HZ.Hz()).ok()?;
+        // The clock without the crystal is no faster than that with it, so the time is no shorter. It guards the crystal's start, too.
         watchdog.enable_tick_generation((CRYSTAL_HZ / 1_000_000) as u8);
+        watchdog.start(WATCHDOG_MS.millis());
+        let crystal = setup_xosc_blocking(p.XOSC, CRYSTAL_HZ.Hz()).ok()?;
         let mut clocks = ClocksManager::new(p.CLOCKS);
         let system =
             PLLConfig { vco_freq: HertzU32::Hz(12 * SYSTEM_HZ), refdiv: 1, post_div1: 4, post_div2: 3 };
@@ -70,6 +80,7 @@ impl Chip {
         let _ = pins.gpio7.into_push_pull_output_in_state(hal::gpio::PinState::High);
         let mut ready: Pin<_, FunctionSioInput, PullUp> = pins.gpio8.reconfigure();
         let _ = ready.is_high();
+        let _: Pin<_, FunctionSioInput, PullUp> = pins.gpio22.reconfigure();
         let _ = pins.gpio9.into_push_pull_output_in_state(hal::gpio::PinState::High);
         let _: Pin<_, FunctionPwm, PullNone> = pins.gpio10.reconfigure();
         // The excitation, which the chip's own converter reads.
@@ -92,6 +103,16 @@ impl Chip {
         let timer = hal::Timer::new(p.TIMER, &mut p.RESETS, &clocks);
         let usb = UsbBus::new(p.USBCTRL_REGS, p.USBCTRL_DPRAM, clocks.usb_clock, true, &mut p.RESETS);
         Some(Self { watchdog, timer, usb: Some(UsbBusAllocator::new(usb)) })
+    }
+
+    /// Shows a state by the light for a second, and does nothing else meanwhile.
+    pub(crate) fn show_a_second(&mut self, state: State) {
+        for time_ms in 0..1_000 {
+            self.watchdog.feed();
+            light(state.is_lit(time_ms));
+            self.timer.delay_ms(1);
+        }
+        light(false);
     }
 }
 
@@ -118,6 +139,12 @@ pub(crate) fn drive(pin: u8, high: bool) {
     } else {
         sio.gpio_out_clr().write(|w| unsafe { w.bits(bit) });
     }
+}
+
+/// Whether the jumper for contacts is set.
+pub(crate) fn asks_for_contacts() -> bool {
+    // SAFETY: a register that is only read.
+    unsafe { (*pac::SIO::ptr()).gpio_in().read().bits() & (1 << CONTACTS_PIN) == 0 }
 }
 
 /// Turns the light on or off.

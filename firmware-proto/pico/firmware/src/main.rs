@@ -21,9 +21,8 @@ use firmware_proto::frame::WireError;
 use firmware_proto::identity::SerialNumber;
 use pad::frames::FrameReader;
 use pad::light::State;
-use pad::pad::{Board, Pad, digits};
+use pad::pad::{Board, Output, Pad, digits};
 use pad::rate::{RATE_DEFAULT_HZ, Rate};
-use rp2040_hal::fugit::ExtU32;
 
 use crate::board::Chip;
 use crate::converters::Converters;
@@ -37,9 +36,6 @@ use crate::restart::{Text, fail};
 #[used]
 static BOOT2: [u8; 256] = rp2040_boot2::BOOT_LOADER_GENERIC_03H;
 
-/// A loop that does not come round in this time is restarted, in milliseconds.
-const WATCHDOG_MS: u32 = 500;
-
 /// Beyond two periods, data-ready may be late by this, in microseconds.
 const LATE_MAX_US: u64 = 20_000;
 
@@ -52,6 +48,13 @@ const RETRY_PERIOD_US: u64 = 50_000;
 /// From one measurement of the board to the next, in microseconds.
 const MEASURE_PERIOD_US: u64 = 10_000;
 
+/// For so long after a restart the light tells it, in microseconds; after it, the next restart is the first again.
+const RESTART_TOLD_US: u64 = 60_000_000;
+
+/// After more restarts than this in a row the light tells it before anything else is tried, for a second each time: what fails so
+/// early shows nothing on the USB.
+const RESTARTS_MAX: u32 = 3;
+
 /// What of it all is where: when something was done last, in microseconds.
 struct Times {
     sampled_us: u64,
@@ -62,10 +65,12 @@ struct Times {
 
 #[rp2040_hal::entry]
 fn main() -> ! {
-    let why = restart::why();
+    let restart = restart::last();
     let unique = flash::unique_number();
     let Some(mut chip) = Chip::take() else { fail(line!()) };
-    chip.watchdog.start(WATCHDOG_MS.millis());
+    if restart.is_some_and(|it| it.in_a_row > RESTARTS_MAX) {
+        chip.show_a_second(State::Restarted);
+    }
     let serial_digits = digits(unique);
     let serial_text = core::str::from_utf8(&serial_digits).unwrap_or_default();
     let Some(serial_number) = SerialNumber::from_ascii(serial_text) else { fail(line!()) };
@@ -73,14 +78,19 @@ fn main() -> ! {
 
     let mut product = Text::default();
     let _ = write!(product, "tactpad pad {}", env!("CARGO_PKG_VERSION"));
-    if let Some(why) = why {
-        let _ = write!(product, " ({why})");
+    if let Some(restart) = restart {
+        let _ = write!(product, " ({})", restart.why);
     }
+    let mut restart_told_until_us = restart.map_or(0, |_| RESTART_TOLD_US);
     let allocator = chip.usb.take().unwrap_or_else(|| fail(line!()));
     let mut ports = Ports::new(&allocator, serial_text, product.as_str());
 
     let measure = Measure::new();
-    let mut pad = Pad::new(serial_number, rate);
+    // What a host chose holds over restarts by the chip itself.
+    let chosen = restart.and_then(|it| Output::of(it.output));
+    let output =
+        chosen.unwrap_or(if board::asks_for_contacts() { Output::Contacts } else { Output::Channels });
+    let mut pad = Pad::new(serial_number, rate, output);
     let mut reader = FrameReader::default();
     let mut converters = Converters::new(chip.timer);
     let mut board =
@@ -98,19 +108,23 @@ fn main() -> ! {
             let codes = reader.read(&taken.frames);
             well &= !codes.restart;
             pad.skip(taken.missed);
-            ports.send(&pad.sample(&codes, taken.time_us, &board), pad.rate());
+            ports.send(&pad.message(&codes, taken.time_us, &board), pad.rate());
             (times.sampled_us, times.told_us) = (now_us, now_us);
         } else if now_us > times.sampled_us + LATE_MAX_US + 2 * u64::from(pad.rate().period_us()) {
             well = false;
             if now_us >= times.told_us + SILENT_PERIOD_US {
-                ports.send(&pad.sample(&reader.silence(), now_us, &board), pad.rate());
+                ports.send(&pad.message(&reader.silence(), now_us, &board), pad.rate());
                 times.told_us = now_us;
             }
         }
 
-        let rate = pad.rate();
+        let (rate, output) = (pad.rate(), pad.output());
         while let Some(command) = ports.command() {
             obey(&mut pad, &mut ports, command, now_us);
+        }
+        if pad.output() != output {
+            restart::keep_output(pad.output() as u16);
+            ports.begin_anew();
         }
         if ports.asks_for_bootloader() {
             restart::into_bootloader();
@@ -128,8 +142,13 @@ fn main() -> ! {
         let state = match () {
             () if pad.is_shown(now_us) => State::Shown,
             () if !well || board.excitation.is_out_of_tolerance() => State::Fault,
+            () if restart_told_until_us > 0 && ports.state() != State::Asleep => State::Restarted,
             () => ports.state(),
         };
+        if restart_told_until_us > 0 && now_us >= restart_told_until_us {
+            restart_told_until_us = 0;
+            restart::forget();
+        }
         board::light(state.is_lit(now_us / 1_000));
         sampling::sleep_until_something_happens();
     }

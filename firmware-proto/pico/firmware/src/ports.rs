@@ -5,7 +5,6 @@ use firmware_proto::command::Command;
 use firmware_proto::frame::{Message, WireError};
 use firmware_proto::hid::{self, REPORT_LEN};
 use firmware_proto::link::{CommandReceiver, encode_message};
-use firmware_proto::sample::Sample;
 use pad::light::State;
 use pad::outbox::Outbox;
 use pad::rate::Rate;
@@ -118,10 +117,15 @@ impl<'a> Ports<'a> {
         }
     }
 
+    /// The next sample of each port is the first of its kind.
+    pub(crate) fn begin_anew(&mut self) {
+        (self.serial_begun, self.hid_begun) = (false, false);
+    }
+
     /// Sends a sample both ways. The first that a port takes after a start says that the pad started, whenever the host came.
-    pub(crate) fn send(&mut self, sample: &Sample, rate: Rate) {
-        let marked = Sample { status: sample.status.with_restarted(), ..*sample };
-        let first = |begun| Message::Sample(if begun { *sample } else { marked });
+    pub(crate) fn send(&mut self, sample: &Message, rate: Rate) {
+        let marked = marked(*sample);
+        let first = |begun| if begun { *sample } else { marked };
         if self.is_configured() {
             self.serial_begun |= self.post(&first(self.serial_begun));
             if rate.hz() <= REPORTS_MAX_HZ {
@@ -184,5 +188,20 @@ impl<'a> Ports<'a> {
             UsbDeviceState::Suspend => State::Asleep,
             _ => State::Alone,
         }
+    }
+}
+
+/// The same as the first sample after a start.
+fn marked(message: Message) -> Message {
+    match message {
+        Message::Sample(mut sample) => {
+            sample.status = sample.status.with_restarted();
+            Message::Sample(sample)
+        }
+        Message::Contact(mut contact) => {
+            contact.status = contact.status.with_restarted();
+            Message::Contact(contact)
+        }
+        other => other,
     }
 }

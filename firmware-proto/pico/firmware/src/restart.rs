@@ -1,4 +1,5 @@
-//! Restarts that say why: the reason survives in the watchdog's registers, and the product's name on the USB tells it.
+//! Restarts that say why: the reason survives in the watchdog's registers, the product's name on the USB tells it, and the light for a
+//! minute.
 
 use core::fmt::{self, Write};
 use core::panic::PanicInfo;
@@ -44,18 +45,46 @@ fn watchdog() -> &'static pac::watchdog::RegisterBlock {
     unsafe { &*pac::WATCHDOG::ptr() }
 }
 
-/// Why the chip was restarted; `None` after power-on. It is told once.
-pub(crate) fn why() -> Option<Why> {
+/// A restart of the chip by itself.
+#[derive(Clone, Copy)]
+pub(crate) struct Restart {
+    pub(crate) why: Why,
+    /// How many there were since power-on, or since the program had run well for a while.
+    pub(crate) in_a_row: u32,
+    /// What the pad sent before it, as a host chose it; no number of the wire if none did.
+    pub(crate) output: u16,
+}
+
+/// The restart that began this run; `None` after power-on. It is told once.
+pub(crate) fn last() -> Option<Restart> {
     let watchdog = watchdog();
     let (kind, detail) = (watchdog.scratch0().read().bits(), watchdog.scratch1().read().bits());
     watchdog.scratch0().write(|w| unsafe { w.bits(MAGIC | RUNNING) });
-    match kind.wrapping_sub(MAGIC) {
+    let why = match kind.wrapping_sub(MAGIC) {
         PANIC => Some(Why::Panic(detail)),
         HARD_FAULT => Some(Why::HardFault(detail)),
         FAILED => Some(Why::Failed(detail)),
         RUNNING if watchdog.reason().read().timer().bit_is_set() => Some(Why::Watchdog),
         _ => None,
-    }
+    };
+    let before = if why.is_some() { watchdog.scratch2().read().bits() } else { 0 };
+    let in_a_row = before.saturating_add(u32::from(why.is_some()));
+    watchdog.scratch2().write(|w| unsafe { w.bits(in_a_row) });
+    let Some(why) = why else {
+        keep_output(u16::MAX);
+        return None;
+    };
+    Some(Restart { why, in_a_row, output: watchdog.scratch3().read().bits() as u16 })
+}
+
+/// Keeps what a host chose that the pad sends, for the next start if that is a restart.
+pub(crate) fn keep_output(output: u16) {
+    watchdog().scratch3().write(|w| unsafe { w.bits(u32::from(output)) });
+}
+
+/// The program has run well for a while: the next restart is the first again.
+pub(crate) fn forget() {
+    watchdog().scratch2().write(|w| unsafe { w.bits(0) });
 }
 
 fn restart(kind: u32, detail: u32) -> ! {

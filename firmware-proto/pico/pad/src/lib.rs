@@ -2,12 +2,14 @@
 
 #![no_std]
 
+pub mod contact;
 pub mod excitation;
 pub mod frames;
 pub mod light;
 pub mod outbox;
 pub mod pad;
 pub mod rate;
+pub mod zero;
 
 /// Converters on the bus, one for each module of the pad.
 pub const CONVERTERS: usize = 3;

@@ -1,11 +1,13 @@
 //! The pad as its host sees it: samples in order, an identity, answers to commands.
 
 use firmware_proto::CHANNELS;
-use firmware_proto::command::{AckResult, Command};
+use firmware_proto::command::{AckResult, Command, OUTPUT_CHANNELS, OUTPUT_CONTACTS};
+use firmware_proto::contact::ContactSample;
 use firmware_proto::frame::{Message, WireError};
 use firmware_proto::identity::{Identity, SerialNumber};
-use firmware_proto::sample::Sample;
+use firmware_proto::sample::{Sample, Status};
 
+use crate::contact::{Decoder, FORCE_DEVIATION_MN, PLACE_DEVIATION_UM};
 use crate::excitation::{Excitation, PICOVOLTS_PER_COUNT};
 use crate::frames::Codes;
 use crate::rate::Rate;
@@ -22,11 +24,35 @@ pub struct Board {
     pub temperature_centi_c: i16,
 }
 
+/// What the pad sends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u16)]
+pub enum Output {
+    /// What its channels read.
+    Channels = OUTPUT_CHANNELS,
+    /// What it makes of that itself.
+    Contacts = OUTPUT_CONTACTS,
+}
+
+impl Output {
+    /// The output that the wire's number means; `None` if it is none.
+    #[must_use]
+    pub const fn of(number: u16) -> Option<Self> {
+        match number {
+            OUTPUT_CHANNELS => Some(Self::Channels),
+            OUTPUT_CONTACTS => Some(Self::Contacts),
+            _ => None,
+        }
+    }
+}
+
 /// The pad.
 #[derive(Clone, Debug)]
 pub struct Pad {
     serial_number: SerialNumber,
     rate: Rate,
+    output: Output,
+    decoder: Decoder,
     sequence: u32,
     shown_until_us: u64,
 }
@@ -34,8 +60,14 @@ pub struct Pad {
 impl Pad {
     /// A pad that has just started.
     #[must_use]
-    pub const fn new(serial_number: SerialNumber, rate: Rate) -> Self {
-        Self { serial_number, rate, sequence: 0, shown_until_us: 0 }
+    pub fn new(serial_number: SerialNumber, rate: Rate, output: Output) -> Self {
+        Self { serial_number, rate, output, decoder: Decoder::default(), sequence: 0, shown_until_us: 0 }
+    }
+
+    /// What it sends.
+    #[must_use]
+    pub const fn output(&self) -> Output {
+        self.output
     }
 
     /// How fast it samples.
@@ -55,8 +87,17 @@ impl Pad {
         self.sequence = self.sequence.wrapping_add(samples);
     }
 
-    /// The next sample.
-    pub fn sample(&mut self, codes: &Codes, time_us: u64, board: &Board) -> Sample {
+    /// The next sample, as what the pad sends.
+    pub fn message(&mut self, codes: &Codes, time_us: u64, board: &Board) -> Message {
+        let sample = self.sample(codes, time_us, board);
+        let rate_hz = self.rate.hz();
+        match self.output {
+            Output::Channels => Message::Sample(sample),
+            Output::Contacts => Message::Contact(contact(&mut self.decoder, &sample, rate_hz)),
+        }
+    }
+
+    fn sample(&mut self, codes: &Codes, time_us: u64, board: &Board) -> Sample {
         let mut status = codes.status;
         if board.excitation.is_out_of_tolerance() {
             status = status.with_supply_fault();
@@ -82,6 +123,16 @@ impl Pad {
                 self.shown_until_us = time_us + u64::from(duration_ms) * 1_000;
                 (Command::Blink { duration_ms }.kind(), AckResult::Done)
             }
+            Ok(Command::SetOutput { output }) => match Output::of(output) {
+                Some(output) => {
+                    // What is sent already goes on, with its zero.
+                    if output != self.output {
+                        (self.output, self.decoder) = (output, Decoder::default());
+                    }
+                    (Command::SetOutput { output: 0 }.kind(), AckResult::Done)
+                }
+                None => (Command::SetOutput { output }.kind(), AckResult::Refused),
+            },
             Err(WireError::UnknownKind(kind)) => (kind, AckResult::Unknown),
             Err(_) => return None,
         };
@@ -91,12 +142,32 @@ impl Pad {
     fn identity(&self) -> Identity {
         Identity {
             serial_number: self.serial_number,
-            channels: CHANNELS as u8,
+            channels: if self.output == Output::Channels { CHANNELS as u8 } else { 0 },
             count_bits: COUNT_BITS,
             rate_hz: self.rate.hz(),
             picovolts_per_count: PICOVOLTS_PER_COUNT,
         }
     }
+}
+
+/// What the decoder makes of a sample. One of which something is wrong says that it cannot be trusted, whatever it is.
+fn contact(decoder: &mut Decoder, sample: &Sample, rate_hz: u16) -> ContactSample {
+    let is_sound = sample.status == Status::OK;
+    let touch = decoder.decode(is_sound.then_some(&sample.counts), rate_hz);
+    let nothing = ContactSample {
+        status: if is_sound { Status::OK } else { Status::OK.with_supply_fault() },
+        ..ContactSample::untouched(sample.sequence, sample.time_us)
+    };
+    touch.map_or(nothing, |touch| ContactSample {
+        place_um: touch.place_um,
+        force_mn: touch.force_mn,
+        place_deviation_um: PLACE_DEVIATION_UM,
+        shear_deviation_mn: FORCE_DEVIATION_MN,
+        normal_deviation_mn: FORCE_DEVIATION_MN,
+        is_touched: true,
+        has_shear: true,
+        ..nothing
+    })
 }
 
 /// The flash chip's unique number in sixteen digits of base 16: the pad's serial number.
@@ -122,7 +193,7 @@ mod tests {
     fn pad() -> Pad {
         let digits = digits([0xE6, 0x60, 0x58, 0x38, 0x83, 0x0A, 0xBC, 0x01]);
         let serial_number = SerialNumber::from_ascii(core::str::from_utf8(&digits).unwrap()).unwrap();
-        Pad::new(serial_number, Rate::near(1_000).unwrap())
+        Pad::new(serial_number, Rate::near(1_000).unwrap(), Output::Channels)
     }
 
     fn sample(pad: &mut Pad, status: Status, board: &Board) -> Sample {
@@ -149,6 +220,28 @@ mod tests {
         let low = Board { excitation: Excitation::new(2_000_000), ..BOARD };
         let told = sample(&mut pad, Status::OK.with_out_of_range(4), &low);
         assert_eq!(told.status, Status::OK.with_out_of_range(4).with_supply_fault());
+    }
+
+    #[test]
+    fn it_sends_contacts_when_it_is_asked_to_and_says_which_cannot_be_trusted() {
+        let mut pad = pad();
+        let ask = |pad: &mut Pad, output| pad.answer(Ok(Command::SetOutput { output }), 0);
+        let ack = |result| Some(Message::Acknowledgement { command: 0x84, result });
+        assert_eq!([ask(&mut pad, 2), ask(&mut pad, 1)], [ack(AckResult::Refused), ack(AckResult::Done)]);
+        let Some(Message::Identity(identity)) = pad.answer(Ok(Command::Identify), 0) else {
+            panic!("an identity")
+        };
+        assert_eq!(identity.channels, 0);
+        let message = |pad: &mut Pad, status| {
+            let codes = Codes { codes: [7; CHANNELS], status, restart: false };
+            pad.message(&codes, 5, &BOARD)
+        };
+        let untouched = ContactSample::untouched(0, 5);
+        assert_eq!(message(&mut pad, Status::OK), Message::Contact(untouched));
+        let faulty = ContactSample { sequence: 1, status: Status::OK.with_supply_fault(), ..untouched };
+        assert_eq!(message(&mut pad, Status::OK.with_out_of_range(8)), Message::Contact(faulty));
+        assert_eq!(ask(&mut pad, 0), ack(AckResult::Done));
+        assert!(matches!(message(&mut pad, Status::OK), Message::Sample(Sample { sequence: 2, .. })));
     }
 
     #[test]

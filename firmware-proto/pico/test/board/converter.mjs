@@ -29,7 +29,7 @@ export function codeOf(volts, gain) {
 const word = (value) => [(value >> 8) & 0xff, value & 0xff, 0];
 
 export class Converter {
-  /** `inputs(seconds)` gives the three differential voltages; `onReady(low)` is told the level of data-ready. */
+  /** `inputs()` gives the three differential voltages now; `onReady(low)` is told the level of data-ready. */
   constructor(clock, inputs, onReady = () => {}) {
     this.clock = clock;
     this.inputs = inputs;
@@ -79,8 +79,7 @@ export class Converter {
 
   convert() {
     const gain = (channel) => 2 ** ((this.registers[REGISTERS.GAIN1] >> (4 * channel)) & 7);
-    const volts = this.inputs(this.clock.nanos / 1e9);
-    const codes = volts.map((volt, channel) => codeOf(volt, gain(channel)));
+    const codes = this.inputs().map((volt, channel) => codeOf(volt, gain(channel)));
     // Two conversions are kept; of more, the newest.
     this.fifo = [...this.fifo.slice(-1), codes];
     this.fresh = (1 << CHANNELS) - 1;
@@ -125,7 +124,7 @@ export class Converter {
     const codes = this.fifo.shift() ?? this.lastCodes ?? [0, 0, 0];
     this.lastCodes = codes;
     const answer = this.answer ?? this.status;
-    if (this.answer === null) this.resynchronized = false;
+    if (this.answer === null) [this.resynchronized, this.inputDamaged] = [false, false];
     const out = [...word(answer), ...codes.flatMap((code) => [(code >> 16) & 0xff, (code >> 8) & 0xff, code & 0xff])];
     out.push(...word(crc16(out)));
     if (this.faults.corrupt > 0) {
@@ -157,15 +156,16 @@ export class Converter {
     const count = isWrite ? (command & 0x7f) + 1 : 0;
     if (this.registers[REGISTERS.MODE] & 0x1000) {
       this.inputDamaged = words[1 + count] !== crc16(this.in.slice(0, 3 * (1 + count)));
-      if (this.inputDamaged) return;
     }
+    if (this.inputDamaged && !isWrite) return;
     const address = (command >> 7) & 0x3f;
     if (command === 0x0011) {
       this.powerUp();
     } else if (command >> 13 === 0b101 && (command & 0x7f) === 0) {
       this.answer = address === REGISTERS.STATUS ? this.status : this.registers[address];
     } else if (isWrite) {
-      this.answer = 0x4000 | (address << 7) | (count - 1);
+      // With a wrong checksum registers are written all the same, and the answer is that to NULL.
+      if (!this.inputDamaged) this.answer = 0x4000 | (address << 7) | (count - 1);
       for (let index = 0; index < count; index++) this.write(address + index, words[1 + index]);
     }
   }

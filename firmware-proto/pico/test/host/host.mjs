@@ -9,6 +9,10 @@ const FRAME_NS = 1e6;
 const BULK_NS = 20e3;
 const AVAILABLE = 1 << 10;
 const FULL = 1 << 15;
+const STALL = 1 << 11;
+/** Buffer controls of endpoint 0. */
+const CONTROL_IN = 0x80;
+const CONTROL_OUT = 0x84;
 const SUSPENDED = 1 << 4;
 const RESUME = 1 << 11;
 
@@ -83,14 +87,24 @@ export class Host {
 
   /** Fetches what an endpoint offers. */
   fetch(endpoint) {
+    const bytes = this.takePacket(endpoint);
+    if (bytes) this.received(endpoint, bytes);
+  }
+
+  /** Takes the packet that an endpoint offers, if it does. */
+  takePacket(endpoint) {
     const offset = this.offered.get(endpoint);
-    if (offset === undefined) return;
+    if (offset === undefined) return undefined;
     this.offered.delete(endpoint);
     const view = this.board.mcu.usbDPRAMView;
     const value = view.getUint32(offset, true);
     const bytes = this.packet(offset, value, endpoint);
     view.setUint32(offset, value & ~(AVAILABLE | FULL), true);
     this.usb.indicateBufferReady(endpoint, false);
+    return bytes;
+  }
+
+  received(endpoint, bytes) {
     if (endpoint === this.endpoints.serialIn && bytes.length > 0) {
       this.chunks.push({ ns: this.board.ns, bytes });
       this.receiver.push(bytes);
@@ -101,11 +115,16 @@ export class Host {
   }
 
   take(port, it) {
-    if (it.kind === 'sample') this.samples[port].push({ ...it, ns: this.board.ns });
+    if (it.kind === 'sample' || it.kind === 'contact') this.samples[port].push({ ...it, ns: this.board.ns });
     else this.replies[port].push(it);
   }
 
-  /** A control transfer: the bytes that come, or none. */
+  /** Whether the device refuses the control transfer at hand. */
+  get refuses() {
+    return [CONTROL_IN, CONTROL_OUT].some((offset) => this.board.mcu.usbDPRAMView.getUint32(offset, true) & STALL);
+  }
+
+  /** A control transfer: the bytes that come, or none; `null` if the device refuses it. */
   control(type, request, value, index, dataOrLength = 0) {
     const reads = (type & 0x80) !== 0;
     const data = reads ? null : Buffer.from(dataOrLength || []);
@@ -121,12 +140,15 @@ export class Host {
       }
     };
     const halves = [value, index, length].flatMap((half) => [half & 0xff, half >> 8]);
+    const view = this.board.mcu.usbDPRAMView;
+    for (const offset of [CONTROL_IN, CONTROL_OUT]) view.setUint32(offset, view.getUint32(offset, true) & ~STALL, true);
     this.usb.sendSetupPacket(new Uint8Array([type, request, ...halves]));
-    if (data?.length) {
-      this.board.run(5, () => this.wanted.has(0));
+    if (data?.length && this.board.run(5, () => this.refuses || this.wanted.has(0)) && !this.refuses) {
       this.usb.endpointReadDone(0, data);
     }
-    if (!this.board.run(50, () => done)) throw new Error(`no answer to request ${request} of type ${type.toString(16)}`);
+    const ended = this.board.run(50, () => done || this.refuses);
+    if (this.refuses) return null;
+    if (!ended) throw new Error(`no answer to request ${request} of type ${type.toString(16)}`);
     this.board.run(0.3);
     if (reads) this.usb.endpointReadDone(0, Buffer.alloc(0));
     this.board.run(0.3);
@@ -140,9 +162,9 @@ export class Host {
   }
 
   /** Sets the device up, as a system does that knows its classes, and opens its serial port. */
-  enumerate({ open = true } = {}) {
+  enumerate({ open = true, settleMs = 1 } = {}) {
     if (!this.board.run(200, () => this.wasReset)) throw new Error('the device does not show itself on the bus');
-    this.board.run(1);
+    this.board.run(settleMs);
     this.control(0x00, 5, 1, 0);
     this.device = this.control(0x80, 6, 0x0100, 0, 18);
     const total = this.control(0x80, 6, 0x0200, 0, 9).readUInt16LE(2);

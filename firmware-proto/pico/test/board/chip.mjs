@@ -6,12 +6,14 @@ import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
 import { Converter } from './converter.mjs';
 import { bootChecksum, flash } from './image.mjs';
+import { Faults } from './processor.mjs';
 
 const { Simulator, ConsoleLogger, LogLevel } = createRequire(`${process.env.TACTPAD_RP2040JS}/`)('rp2040js');
 
 const SELECT_PINS = [5, 6, 7];
 const READY_PIN = 8;
 const SYNC_PIN = 9;
+const CONTACTS_PIN = 22;
 const LIGHT_PIN = 25;
 const CLOCK_SLICE = 5;
 const EXCITATION_INPUT = 0;
@@ -21,7 +23,11 @@ const REFERENCE_V = 3;
 /** The flash chip's unique number. */
 export const UNIQUE = [0xe6, 0x60, 0x58, 0x38, 0x83, 0x0a, 0xbc, 0x01];
 
-const image = flash(readFileSync(process.env.TACTPAD_UF2));
+/** All of the chip but its oscillators. */
+const RESET_ALL = 0x1fffc;
+
+/** The file that is flashed. */
+export const image = flash(readFileSync(process.env.TACTPAD_UF2));
 
 /** A peripheral of which the emulator has none, or one that is not enough here. */
 class Registers {
@@ -41,31 +47,41 @@ class Registers {
 }
 
 export class Board {
-  /** `inputs(seconds)` gives the nine differential voltages at the converters' pins, in the wire's order. */
-  constructor(inputs = () => new Array(9).fill(0)) {
+  /**
+   * `inputs(seconds)` gives the nine differential voltages at the converters' pins, in the wire's order; `jumper`: that for contacts is
+   * set.
+   */
+  constructor(inputs = () => new Array(9).fill(0), { jumper = false } = {}) {
     this.inputs = inputs;
     this.excitationV = 2.5;
     this.temperatureC = 25;
     this.readyNs = [];
     this.resets = 0;
+    this.jumper = jumper;
     this.bootloader = false;
+    /** What the flash holds. */
+    this.image = image;
+    /** When the chip was started last: its own time begins anew, the board's goes on. */
+    this.startedNs = 0;
     this.start(null);
   }
 
   get ns() {
-    return this.simulator.clock.nanos;
+    return this.startedNs + (this.simulator?.clock.nanos ?? 0);
   }
 
   /** Power-on, or a reset by the watchdog, which keeps its registers. */
   start(watchdog) {
+    this.startedNs = this.ns;
     this.simulator = new Simulator();
     const mcu = (this.mcu = this.simulator.rp2040);
     mcu.logger = new ConsoleLogger(LogLevel.Error, false);
-    mcu.flash.set(image, 0);
+    mcu.flash.set(this.image, 0);
+    this.faults = new Faults(mcu);
     const clock = this.simulator.clock;
     this.converters = SELECT_PINS.map((_, index) => new Converter(
       clock,
-      (seconds) => this.inputs(seconds).slice(3 * index, 3 * index + 3),
+      () => this.inputs(this.ns / 1e9).slice(3 * index, 3 * index + 3),
       index === 0 ? (low) => this.ready(low) : undefined,
     ));
     this.wire();
@@ -78,6 +94,8 @@ export class Board {
     dog.onWatchdogTrigger = () => {
       // The emulator's would bite again and again before anything else runs.
       dog.alarm.enable = false;
+      const reset = mcu.peripherals[0x40010].wdsel;
+      if (reset !== RESET_ALL) throw new Error(`the watchdog would reset only ${reset.toString(16)} of the chip`);
       this.restarting = true;
     };
     this.boot();
@@ -98,6 +116,8 @@ export class Board {
       if (state === 0) lowNs = clock.nanos;
       else for (const converter of converters) converter.syncPulse(clock.nanos - lowNs);
     });
+    // Pulled up, unless a jumper is set.
+    mcu.gpio[CONTACTS_PIN].setInputValue(!this.jumper);
     const spi = mcu.spi[0];
     let answer = 0xff;
     const done = clock.createAlarm(() => spi.completeTransmit(answer));
@@ -143,7 +163,7 @@ export class Board {
 
   boot() {
     const { mcu } = this;
-    const stage = image.subarray(0, 256);
+    const stage = this.image.subarray(0, 256);
     if (bootChecksum(stage.subarray(0, 252)) !== stage.readUInt32LE(252)) throw new Error('the boot ROM would not start this');
     // A ROM of which the program uses one function, that into the boot loader: the table, its search, and the function itself.
     const rom = new DataView(new ArrayBuffer(64));
@@ -160,33 +180,50 @@ export class Board {
     mcu.core.PC = 0x20041f00;
   }
 
+  /** The supply goes, or comes: time goes on, and nothing happens while it is off. */
+  power(on) {
+    this.off = !on;
+    if (on) this.start(null);
+  }
+
   /** Runs until `done` says so, or for so many milliseconds of simulated time; says whether it was done. */
   run(ms, done = () => false) {
-    let endNs = this.ns + ms * 1e6;
+    const endNs = this.ns + ms * 1e6;
     while (this.ns < endNs) {
-      const { mcu, simulator } = this;
+      if (this.off) {
+        this.startedNs = endNs - this.simulator.clock.nanos;
+        return false;
+      }
+      const { mcu, simulator, faults } = this;
       const { core } = mcu;
       const { clock } = simulator;
       const cycleNs = 1e9 / mcu.clkSys;
       for (let step = 0; step < 200 && !this.restarting; step++) {
         if (core.waiting && core.checkForInterrupts()) core.waiting = false;
-        if (core.waiting) {
-          if (clock.nanos >= endNs) break;
-          clock.tick(Math.max(1, Math.min(clock.nanosToNextAlarm, endNs - clock.nanos)));
+        if (core.waiting || faults.lockedUp) {
+          const leftNs = endNs - this.ns;
+          if (leftNs <= 0) break;
+          clock.tick(Math.max(1, Math.min(clock.nanosToNextAlarm, leftNs)));
         } else {
+          const at = core.PC;
           clock.tick(core.executeInstruction() * cycleNs);
+          if (faults.pending) faults.take(at);
         }
       }
       if (core.PC === 0x38) this.bootloader = true;
       if (this.restarting) {
         this.restarting = false;
         this.resets++;
-        endNs -= this.ns;
         this.start(mcu.peripherals[0x40058]);
       }
       if (done()) return true;
     }
     return false;
+  }
+
+  /** As if it had run well for a minute: the next restart is the first again. */
+  forgetRestarts() {
+    this.mcu.peripherals[0x40058].scratchData[2] = 0;
   }
 
   get lit() {

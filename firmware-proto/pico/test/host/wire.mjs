@@ -27,6 +27,17 @@ export function message(body) {
         centiC: bytes.readInt16LE(50),
         status: bytes.readUInt16LE(52),
       };
+    case 0x05:
+      return {
+        kind: 'contact',
+        sequence: bytes.readUInt32LE(2),
+        timeUs: Number(bytes.readBigUInt64LE(6)),
+        placeUm: [14, 18].map((at) => bytes.readInt32LE(at)),
+        forceMn: [22, 26, 30].map((at) => bytes.readInt32LE(at)),
+        touched: (bytes.readUInt16LE(40) & 1) !== 0,
+        shear: (bytes.readUInt16LE(40) & 2) !== 0,
+        status: bytes.readUInt16LE(42),
+      };
     case 0x02:
       return {
         kind: 'identity',
@@ -58,6 +69,7 @@ export function frame(body) {
 
 export const IDENTIFY = [1, 0x81];
 export const setRate = (hz) => [1, 0x82, hz & 0xff, hz >> 8];
+export const setOutput = (output) => [1, 0x84, output, 0];
 export const blink = (ms) => [1, 0x83, ms & 0xff, ms >> 8];
 
 /** Takes bytes of a serial line; calls `onMessage` for each good frame and counts the others. */

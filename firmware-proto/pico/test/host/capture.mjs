@@ -19,8 +19,8 @@ export function tactpad(...args) {
 }
 
 /** The events that a capture comes to. */
-export function replay(file) {
-  return tactpad('replay', file).split('\n').filter(Boolean).map((line) => JSON.parse(line));
+export function replay(file, ...options) {
+  return tactpad('replay', file, ...options).split('\n').filter(Boolean).map((line) => JSON.parse(line));
 }
 
 /** The entries of a capture: kind, time and payload. */
@@ -65,10 +65,10 @@ export function heard(head, chunks, fromNs, toNs) {
   const look = (untilNs) => {
     for (lastNs += LOOK_NS; lastNs < untilNs; lastNs += LOOK_NS) entries.push({ kind: TIMEOUT, ns: lastNs - fromNs });
   };
-  for (const { ns, bytes } of chunks) {
+  for (const { ns, bytes, kind = BYTES } of chunks) {
     if (ns < fromNs || ns > toNs) continue;
     look(ns);
-    entries.push({ kind: BYTES, ns: ns - fromNs, payload: bytes });
+    entries.push({ kind, ns: ns - fromNs, payload: bytes });
     lastNs = ns;
   }
   look(toNs);

@@ -256,6 +256,8 @@ pub struct LineCheck {
     /// What a look found, and where chance may have a part in it the next one, too; it stays for a while.
     finding: Option<LineFinding>,
     candidate: Option<LineFinding>,
+    /// What the look before found that gave the candidate, where both found something.
+    earlier: Option<LineFinding>,
     clean: u8,
 }
 
@@ -296,7 +298,7 @@ impl Default for LineCheck {
 impl LineCheck {
     /// Has seen nothing.
     pub const fn new() -> Self {
-        Self { look: None, finding: None, candidate: None, clean: 0 }
+        Self { look: None, finding: None, candidate: None, earlier: None, clean: 0 }
     }
 
     /// What is wrong, if anything is.
@@ -334,11 +336,11 @@ impl LineCheck {
         let found = look.as_ref().and_then(|look| look.found(0));
         let is_certain = found.as_ref().is_some_and(LineFinding::is_certain)
             && look.as_ref().and_then(|look| look.found(look.burst_us())) == found;
-        let is_again = match (&self.candidate, &found) {
-            (_, None) => false,
-            (Some(before), Some(now)) => before.is_seen_again_as(now) || is_certain,
-            (None, Some(_)) => is_certain,
-        };
+        // Of two things that are wrong the graver one may hide the other in every other look.
+        let before = [self.candidate, self.earlier];
+        let is_again = found.is_some_and(|now| {
+            is_certain || before.iter().flatten().any(|before| before.is_seen_again_as(&now))
+        });
         // Another thing that is seen once does not keep the one that was found.
         let is_seen = matches!((&self.finding, &found), (Some(before), Some(now)) if before.is_like(now));
         self.clean = if is_seen { 0 } else { self.clean.saturating_add(1) };
@@ -351,6 +353,7 @@ impl LineCheck {
         } else if self.clean >= CLEAN_LOOKS && !may_wrap_again {
             self.finding = None;
         }
+        self.earlier = self.candidate.filter(|_| found.is_some());
         self.candidate = found;
     }
 }

@@ -8,6 +8,7 @@ use std::f64::consts::FRAC_2_PI;
 use std::ops::RangeInclusive;
 
 use super::cases::{CASES, Case};
+use super::device::DeviceChanges;
 use super::judged::{Decoded, Summary, decoded_by};
 use super::learned::{Learned, inverse};
 use super::memory::Memory;
@@ -191,8 +192,10 @@ struct Outcome {
     place: f64,
     force: f64,
     covered: f64,
-    /// Errors over the bound that knows no more than the labels tell; 0 where that takes too long.
+    /// Errors over the bound that knows no more than the labels tell, of gains, leaks and background; 0 where that takes too long.
     learned: [f64; 2],
+    /// The same of somebody to whom the numbers of the device are those of any pad, too, as `adapt` has it.
+    declared: [f64; 2],
 }
 
 /// Of more labels the bound that has to learn takes too long, and is hardly another one.
@@ -237,22 +240,23 @@ impl Kind<'_> {
         let hidden = Hidden { table, background: &background, wiring: &wiring };
         let over = |[place_mm, force_n]: [f64; 2]| [found.place_mm / place_mm, found.force_n / force_n];
         let [place, force] = over(hidden.bound(&loaded, |contact| hidden.unknown_by_rig(&rig, contact)));
-        let learned = if contacts <= LEARNED_MAX {
-            let learned = Learned::of(hidden, &known.truths);
+        let [learned, declared] = [DeviceChanges::none(), DeviceChanges::of_any()].map(|device| {
+            if contacts > LEARNED_MAX {
+                return [0.0; 2];
+            }
+            let learned = Learned::of(hidden, device, &known.truths);
             over(hidden.bound(&loaded, |contact| learned.unknown(contact)))
-        } else {
-            [0.0; 2]
-        };
+        });
         println!(
             "{}, {contacts} labels, {:.1} % of {length_mm} mm, seed {seed}: {:.3} mm ({place:.2} of the bound), {:.4} N ({force:.2}), \
-             {:.3} in the regions, over what labels tell {learned:.2?}",
+             {:.3} in the regions, over what labels tell {learned:.2?}, of the device, too, {declared:.2?}",
             case.name,
             100.0 * share,
             found.place_mm,
             found.force_n,
             found.covered
         );
-        Outcome { seed, place, force, covered: found.covered, learned }
+        Outcome { seed, place, force, covered: found.covered, learned, declared }
     }
 
     fn outcomes(self, seeds: RangeInclusive<u64>) -> Vec<Outcome> {
@@ -326,13 +330,43 @@ fn fields_that_are_off_smoothly_cost_little() {
     assert!(medians.iter().all(|median| *median <= MEDIAN_MOST));
 }
 
+/// With few labels: medians over the table's bound, and over that of who knows no more than the labels tell.
+fn few_labels_are_used_well(contacts: usize, plain_most: f64, seeds: RangeInclusive<u64>) {
+    let outcomes = Kind::nominal(contacts, 0.015, 14.0).outcomes(seeds);
+    let (plain, covered) = pooled(&outcomes);
+    let learned = [median(&outcomes, |it| it.learned[0]), median(&outcomes, |it| it.learned[1])];
+    let declared = [median(&outcomes, |it| it.declared[0]), median(&outcomes, |it| it.declared[1])];
+    println!("medians over what labels tell {learned:.3?}, of the device, too, {declared:.3?}");
+    assert!(plain.iter().all(|median| *median <= plain_most), "{plain:?}");
+    assert!(declared.iter().all(|median| *median <= MEDIAN_MOST), "{declared:?}");
+    assert!(COVERED_POOLED.contains(&covered), "{covered}");
+    assert!(outcomes.iter().all(|it| it.covered >= COVERED_LEAST), "{outcomes:?}");
+}
+
 #[test]
-#[ignore = "proof: 60 s: backgrounds of other sizes and lengths, and fewer labels"]
+fn twenty_labels_of_a_field_that_is_off_smoothly_are_used_well() {
+    let outcome = Kind::nominal(20, 0.015, 14.0).outcome(401);
+    let [place, force] = outcome.declared;
+    assert!(place.max(force) <= WORST_MOST && outcome.covered >= COVERED_LEAST, "{outcome:?}");
+}
+
+#[test]
+#[ignore = "proof: 150 s: forty seeds with 73 labels"]
+fn seventy_three_labels_are_used_well() {
+    few_labels_are_used_well(73, 1.5, 401..=440);
+}
+
+#[test]
+#[ignore = "proof: 120 s: misses its goal over what labels tell, as docs/decoding.md says: forty seeds with 20 labels"]
+fn twenty_labels_are_used_well() {
+    few_labels_are_used_well(20, 1.8, 401..=440);
+}
+
+#[test]
+#[ignore = "proof: 60 s: backgrounds of other sizes and lengths"]
 fn other_smooth_errors_cost_little() {
-    for (contacts, share, length_mm) in
-        [(648, 0.0, 14.0), (648, 0.005, 20.0), (73, 0.015, 14.0), (20, 0.015, 14.0)]
-    {
-        let outcomes = Kind::nominal(contacts, share, length_mm).outcomes(441..=444);
+    for (share, length_mm) in [(0.0, 14.0), (0.005, 20.0)] {
+        let outcomes = Kind::nominal(648, share, length_mm).outcomes(441..=444);
         pooled(&outcomes);
         assert!(outcomes.iter().all(|it| it.covered >= COVERED_LEAST), "{outcomes:?}");
     }

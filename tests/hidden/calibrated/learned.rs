@@ -1,16 +1,18 @@
-//! What labels tell somebody of a pad who knows what pads are drawn from: gains, leaks and a smooth error of each map, all of them
-//! normal, as a Gaussian process. By that the readings of a contact are known but for a covariance.
+//! What labels tell somebody of a pad who knows what pads are drawn from: gains, leaks, a smooth error of each map and, if asked,
+//! numbers of the device, all of them normal, as a Gaussian process. By that the readings of a contact are known but for a covariance.
 //!
 //! With the parameters' covariance P, the labelled contacts' derivatives A and the covariance V of their noise, with that of their
 //! labels, the covariance of what readings Bθ of another contact are is B P Bᵀ − B P Aᵀ (A P Aᵀ + V)⁻¹ A P Bᵀ.
 
 use super::bound::Hidden;
+use super::device::DeviceChanges;
 use super::pad::{LABEL_MM, LABEL_N, LEAK, WIDE_GAIN};
 use crate::plan::Contact;
 
 /// A pad's labelled contacts.
 pub(super) struct Learned<'h> {
     hidden: Hidden<'h>,
+    device: DeviceChanges,
     known: Vec<Known>,
     /// L of A P Aᵀ + V = L Lᵀ, row by row up to the diagonal.
     lower: Vec<Vec<f64>>,
@@ -21,13 +23,15 @@ struct Known {
     contact: Contact,
     strain: [f64; 9],
     own: [f64; 9],
+    /// Changes of the readings by one deviation of each number of the device that is not known.
+    by_device: Vec<[f64; 9]>,
 }
 
 impl<'h> Learned<'h> {
-    pub(super) fn of(hidden: Hidden<'h>, contacts: &[Contact]) -> Self {
+    pub(super) fn of(hidden: Hidden<'h>, device: DeviceChanges, contacts: &[Contact]) -> Self {
         let loaded = contacts.iter().filter(|contact| contact.force != [0.0; 3]);
-        let known: Vec<Known> = loaded.map(|contact| Known::of(&hidden, contact)).collect();
-        let mut learned = Self { hidden, known, lower: Vec::new() };
+        let known: Vec<Known> = loaded.map(|contact| Known::of(&hidden, &device, contact)).collect();
+        let mut learned = Self { hidden, device, known, lower: Vec::new() };
         for (at, one) in learned.known.iter().enumerate() {
             let (slopes, variances) = hidden.linearised(&one.contact);
             let labels = [LABEL_MM, LABEL_MM, LABEL_N, LABEL_N, LABEL_N];
@@ -64,6 +68,11 @@ impl<'h> Learned<'h> {
         let [dx, dy] = [0, 1].map(|axis| one.contact.place[axis] - other.contact.place[axis]);
         let near = (-0.5 * (dx * dx + dy * dy) / background.length_mm.powi(2)).exp();
         let mut covariance = [[0.0; 9]; 9];
+        for (one, other) in one.by_device.iter().zip(&other.by_device) {
+            for (row, one) in covariance.iter_mut().zip(one) {
+                row.iter_mut().zip(other).for_each(|(entry, other)| *entry += one * other);
+            }
+        }
         for channel in 0..9 {
             let gain = WIDE_GAIN.powi(2) / 3.0 * one.strain[channel] * other.strain[channel];
             let maps: f64 = (0..3)
@@ -90,7 +99,7 @@ impl<'h> Learned<'h> {
 
     /// Covariance of what a contact reads, with what is not known of the pad.
     pub(super) fn unknown(&self, contact: &Contact) -> [[f64; 9]; 9] {
-        let one = Known::of(&self.hidden, contact);
+        let one = Known::of(&self.hidden, &self.device, contact);
         let blocks: Vec<[[f64; 9]; 9]> =
             self.known.iter().map(|other| self.covariance(&one, other)).collect();
         // L⁻¹ A P Bᵀ, channel by channel.
@@ -117,9 +126,14 @@ impl<'h> Learned<'h> {
 }
 
 impl Known {
-    fn of(hidden: &Hidden<'_>, contact: &Contact) -> Self {
+    fn of(hidden: &Hidden<'_>, device: &DeviceChanges, contact: &Contact) -> Self {
         let strain = hidden.strain(contact);
-        Self { contact: *contact, strain, own: std::array::from_fn(|k| hidden.wiring.gains[k] * strain[k]) }
+        Self {
+            contact: *contact,
+            strain,
+            own: std::array::from_fn(|k| hidden.wiring.gains[k] * strain[k]),
+            by_device: device.columns(contact, hidden.wiring),
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 mod at_home;
 mod bound;
 mod cases;
+mod device;
 mod judged;
 mod learned;
 mod memory;

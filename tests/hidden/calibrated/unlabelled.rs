@@ -6,29 +6,16 @@
 //! V⁻¹ = W − W J (Λ + Jᵀ W J)⁻¹ Jᵀ W, and what a contact with the derivatives B reads is known but for B H⁻¹ Bᵀ.
 
 use super::bound::Hidden;
+use super::device::DeviceChanges;
 use super::learned::inverse;
 use super::pad::{LEAK, REACH_MM, WIDE_GAIN};
 use crate::plan::Contact;
 
 use tactpad::numeric::linear::{LargeFactor, Symmetric};
 use tactpad::numeric::products::{combined, dot};
-use tactpad::numeric::zernike::{Polynomial, jets};
-use tactpad::pad::device::Device;
-use tactpad::pad::device::unit::Unit;
-use tactpad::pad::field::PadField;
 
-/// How well numbers of a device are known, as `adapt` has it: where a module stands (mm, degrees), its moduli, those of all modules,
-/// the plate's thickness.
-const SHIFT_MM: f64 = 0.15;
-const TURN_DEG: f64 = 2.0;
-const MODULE_SHARE: f64 = 0.3;
-const COMMON_SHARE: f64 = 0.2;
-const THICKNESS_SHARE: f64 = 0.08;
 /// So much of the background's variance may be left out of its expansion, at the rim.
 const LEFT_MAX: f64 = 1e-3;
-
-/// Polynomials of the device's numbers have no higher degree.
-const DEGREE: usize = 36;
 
 /// What is not known of a pad beside gains and leaks.
 #[derive(Debug, Clone, Copy)]
@@ -45,9 +32,7 @@ pub(super) type Labelled = (Contact, [f64; 5]);
 /// What contacts tell of a pad.
 pub(super) struct Information<'h> {
     hidden: Hidden<'h>,
-    /// Change of the channels' maps by one deviation of each number of the device.
-    device: Vec<[[Polynomial; 3]; 9]>,
-    plate_mm: f64,
+    device: DeviceChanges,
     /// Powers of x and y of the background's expansion.
     powers: Vec<[i32; 2]>,
     factor: Option<LargeFactor>,
@@ -56,9 +41,8 @@ pub(super) struct Information<'h> {
 impl<'h> Information<'h> {
     pub(super) fn of(hidden: Hidden<'h>, unknown: Unknown, contacts: &[Labelled]) -> Self {
         let powers = if unknown.background { powers(hidden.background.length_mm) } else { Vec::new() };
-        let device = if unknown.device { device() } else { Vec::new() };
-        let plate_mm = Device::nominal().plate.radius_mm();
-        let mut it = Self { hidden, device, plate_mm, powers, factor: None };
+        let device = if unknown.device { DeviceChanges::of_any() } else { DeviceChanges::none() };
+        let mut it = Self { hidden, device, powers, factor: None };
         // All columns are of one deviation.
         let size = it.slopes(&contacts[0].0)[0].len();
         let mut information = Symmetric::zeros(size);
@@ -136,17 +120,7 @@ impl<'h> Information<'h> {
             column[into] = LEAK * wiring.gains[from] * strain[from];
             columns.push(column);
         }
-        let degree = if self.device.is_empty() { 0 } else { DEGREE };
-        let jets = jets(degree, [x, y].map(|mm| mm / self.plate_mm));
-        for maps in &self.device {
-            let mut column = [0.0; 9];
-            for (channel, maps) in maps.iter().enumerate() {
-                let map = |axis: usize| maps[axis].value(&jets) * force[axis];
-                let uv = wiring.gains[channel] * (0..3).map(map).sum::<f64>();
-                column.iter_mut().zip(coupled(channel, uv)).for_each(|(sum, uv)| *sum += uv);
-            }
-            columns.push(column);
-        }
+        columns.extend(self.device.columns(contact, wiring));
         (0..9).map(|channel| columns.iter().map(|column| column[channel]).collect()).collect()
     }
 
@@ -176,26 +150,4 @@ fn powers(length_mm: f64) -> Vec<[i32; 2]> {
 
 fn factorial(of: i32) -> f64 {
     (1..=of).map(f64::from).product()
-}
-
-/// Changes of the maps by one deviation of each number of the device.
-fn device() -> Vec<[[Polynomial; 3]; 9]> {
-    let nominal = Device::nominal();
-    let one = |it: &tactpad::pad::field::Sensitivity| {
-        let value = it.parameter.get(&nominal);
-        let deviation = match (it.parameter.module(), it.parameter.unit()) {
-            (Some(_), Unit::Millimetre) => SHIFT_MM,
-            (Some(_), Unit::Degree) => TURN_DEG,
-            (Some(_), _) => MODULE_SHARE * value,
-            (None, Unit::Millimetre) if it.parameter.name() == "plate.thickness_mm" => {
-                THICKNESS_SHARE * value
-            }
-            (None, Unit::Megapascal) if it.parameter.name() != "material.plate.e_mpa" => COMMON_SHARE * value,
-            (None, _) => return None,
-        };
-        let mut maps = it.maps.clone();
-        maps.iter_mut().flatten().for_each(|map| map.coefficients.iter_mut().for_each(|it| *it *= deviation));
-        Some(maps)
-    };
-    PadField::nominal().sensitivities.iter().filter_map(one).collect()
 }

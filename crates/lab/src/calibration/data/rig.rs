@@ -170,11 +170,12 @@ fn matched_together(numbers: &[(f64, Option<Told>)], probability: f64) -> (Vec<M
     let of_wide = 1.0 / (1.0 + odds * libm::exp(log_narrow - log_wide));
     // ln Σᵢ πᵢ Πⱼ N(mⱼ; 0, sⱼ² + σᵢⱼ²), by the wide part and its weight.
     let mut log_odds = log_wide + libm::log(probability / of_wide);
-    let mut of_number = |(wide, told): &(f64, Option<Told>)| {
+    // None where the posterior's two parts are so far apart that it is wider than what the contacts say.
+    let of_number = |(wide, told): &(f64, Option<Told>)| {
         let parts = [(1.0 - of_wide, NARROW * wide), (of_wide, *wide)];
         let Some(Told { value, variance }) = *told else {
             let square: f64 = parts.iter().map(|(weight, deviation)| weight * deviation * deviation).sum();
-            return MatchedPrior { mean: 0.0, precision: square.recip() };
+            return Some(MatchedPrior { mean: 0.0, precision: square.recip() });
         };
         // Σᵢ wᵢ mᵢ, and Σᵢ wᵢ (vᵢ + mᵢ²) less its square.
         let [mut mean, mut square] = [0.0; 2];
@@ -184,18 +185,20 @@ fn matched_together(numbers: &[(f64, Option<Told>)], probability: f64) -> (Vec<M
             square += weight * (variance * share + (value * share).powi(2));
         }
         let left = square - mean * mean;
-        // The posterior's precision less that of the contacts; a prior that would widen it is the wide part.
-        let least = 1.0 / (wide * wide);
+        // The posterior's precision less that of the contacts.
         let precision = 1.0 / left - 1.0 / variance;
-        let prior = if precision <= least {
-            MatchedPrior { mean: 0.0, precision: least }
-        } else {
-            MatchedPrior { mean: (mean / left - value / variance) / precision, precision }
-        };
-        log_odds -= log_density(value, prior.mean, variance + prior.precision.recip());
-        prior
+        let is_narrower = precision > 1.0 / (wide * wide);
+        is_narrower.then_some(MatchedPrior { mean: (mean / left - value / variance) / precision, precision })
     };
-    let priors = numbers.iter().map(&mut of_number).collect();
+    let matched: Option<Vec<MatchedPrior>> = numbers.iter().map(of_number).collect();
+    // Where no normal prior stands for the mixture, the wide part does: for all numbers of the cause, which is there or is not.
+    let wide = |(wide, _): &(f64, Option<Told>)| MatchedPrior { mean: 0.0, precision: 1.0 / (wide * wide) };
+    let priors = matched.unwrap_or_else(|| numbers.iter().map(wide).collect());
+    for ((_, told), prior) in numbers.iter().zip(&priors) {
+        if let Some(Told { value, variance }) = *told {
+            log_odds -= log_density(value, prior.mean, variance + prior.precision.recip());
+        }
+    }
     (priors, log_odds)
 }
 
@@ -323,6 +326,14 @@ mod tests {
                 assert!(left >= 0.9 / whole, "{told}: the wide part is no narrower than what is left");
             }
         }
+    }
+
+    #[test]
+    fn a_cause_that_may_be_there_is_free_in_all_its_numbers() {
+        // By itself the second number may well be of the narrow part, with a precision of 16.
+        let told = [0.4, -0.13].map(|value| (0.4, Some(Told { value, variance: 0.0121 })));
+        let (priors, _) = matched_together(&told, 0.05);
+        assert!(priors.iter().all(|it| it.mean == 0.0 && (it.precision * 0.16 - 1.0).abs() < 1e-12));
     }
 
     #[test]

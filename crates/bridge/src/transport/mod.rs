@@ -10,6 +10,7 @@ pub mod opener;
 mod pacing;
 pub mod pads;
 pub mod playback;
+pub mod rewired;
 pub mod serial;
 mod usb;
 pub mod virtual_pad;

@@ -3,6 +3,7 @@
 pub mod address;
 pub mod evdev;
 pub mod fault;
+pub mod firmware;
 mod framed;
 pub mod hid;
 pub mod lines;

@@ -170,12 +170,12 @@ fn with_inputs_that_tell_nothing_the_others_are_found_or_left_open() {
 }
 
 #[test]
-#[ignore = "proof: 600 s: three thousand pads, none told wrong"]
-fn thousands_of_pads_are_found_or_left_open() {
-    let whole = Score::of(20_000..22_000, |_| 0);
-    let partly = Score::of(30_000..31_000, |random| 1 + random.below(2));
+#[ignore = "proof: 400 s: a thousand pads, none told wrong"]
+fn a_thousand_pads_are_found_or_left_open() {
+    let whole = Score::of(20_000..20_800, |_| 0);
+    let partly = Score::of(30_000..30_200, |random| 1 + random.below(2));
     assert_eq!([whole.wrong, partly.wrong], [0, 0], "{whole:?} {partly:?}");
-    assert!(whole.right >= 1_600 && partly.right >= 400, "{whole:?} {partly:?}");
+    assert!(whole.right >= 620 && partly.right >= 75, "{whole:?} {partly:?}");
 }
 
 #[test]

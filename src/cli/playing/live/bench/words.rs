@@ -14,7 +14,7 @@ pub(super) fn is_time_to_take_away(step: &BenchStep) -> bool {
 
 /// Whether a message of the bridge is of the cable, and not of channels that are judged here.
 pub(super) fn is_of_line(line: &str) -> bool {
-    let of_zero_and_channels = ["channel", "finger", "zero", "playing", "paused"];
+    let of_zero_and_channels = ["channel", "finger", "zero", "decoder", "playing", "paused"];
     of_zero_and_channels.iter().all(|word| !line.contains(word))
 }
 

@@ -166,7 +166,7 @@ fn any_order_and_any_signs_are_found_or_left_open_and_never_told_wrong() {
 fn with_inputs_that_tell_nothing_the_others_are_found_or_left_open() {
     let score = Score::of(10_000..10_024, |random| 1 + random.below(2));
     assert_eq!(score.wrong, 0, "{score:?}");
-    assert!(score.right >= 8, "{score:?}");
+    assert!(score.right >= 6, "{score:?}");
 }
 
 #[test]

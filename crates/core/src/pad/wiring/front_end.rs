@@ -4,7 +4,7 @@
 //! A tap's departure from the mid-point is converted; a channel is four times that ([`super::HALF_BRIDGES`]), and is told as if the excitation
 //! were the device file's.
 //!
-//! Source: Texas Instruments, ADS131M03 data sheet (SBAS890): input range ±1.2 V/gain, absolute input voltage, input-referred noise.
+//! Source: Texas Instruments, ADS131M03 data sheet (SBAS853 and its sisters): input range ±1.2 V/gain, absolute input voltage, input-referred noise.
 
 use crate::pad::device::Device;
 

@@ -47,8 +47,11 @@ const DRAWS: usize = 48;
 const BEGINNINGS: usize = 4;
 /// Beside a drawn contact, expected readings are off by so much of their size.
 const DRAWN_SHARE: f64 = 0.15;
-/// Wirings whose cost is within this of the least are not told apart.
+/// Wirings whose cost is within this of the least are not told apart. A contact leaves four equations of nine channels; where inputs are missing
+/// fewer are left to speak against a wrong one, and the margin grows as their number falls: with 10 one sign of 200 pads with one or two
+/// missing inputs was told wrong.
 pub const MARGIN: f64 = 10.0;
+const EQUATIONS: f64 = 4.0;
 /// Mean cost of a deed from which it is another pad, or where something else was done than asked. Of pads whose gains scatter by a tenth, or
 /// whose plate or modules are a little different, no wrong wiring was the likeliest below 5, and the middle pad has 2.6; one with a module that
 /// came half loose has 5 to 20.
@@ -138,7 +141,8 @@ impl<'p> OrderSearch<'p> {
     pub fn wiring(&self, readings: &[DeedReading], told: &[bool; CHANNELS]) -> Option<Order> {
         let deeds: Vec<ScaledDeed> =
             readings.iter().filter_map(|it| ScaledDeed::of(it, told, self.device, self.field)).collect();
-        if deeds.is_empty() || told.iter().filter(|told| !**told).count() > UNTOLD_MAX {
+        let untold = told.iter().filter(|told| !**told).count();
+        if deeds.is_empty() || untold > UNTOLD_MAX {
             return None;
         }
         let costs = Costs { deeds: &deeds, decoders: self.decoders(told), told };
@@ -149,9 +153,10 @@ impl<'p> OrderSearch<'p> {
             self.descend(&costs, begin, &mut known);
         }
         known.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let margin = MARGIN * EQUATIONS / (EQUATIONS - untold as f64);
         let (least, wiring) = *known.first().filter(|it| it.0.is_finite())?;
         let alike: Vec<_> =
-            known.iter().filter(|(cost, _)| cost - least <= MARGIN).map(|(_, wiring)| *wiring).collect();
+            known.iter().filter(|(cost, _)| cost - least <= margin).map(|(_, wiring)| *wiring).collect();
         Some(Order { wiring, alike, cost: least / deeds.len() as f64 })
     }
 

@@ -48,8 +48,8 @@ const BEGINNINGS: usize = 4;
 /// Beside a drawn contact, expected readings are off by so much of their size.
 const DRAWN_SHARE: f64 = 0.15;
 /// Wirings whose cost is within this of the least are not told apart. A contact leaves four equations of nine channels; where inputs are missing
-/// fewer are left to speak against a wrong one, and the margin grows as their number falls: with 10 one sign of 200 pads with one or two
-/// missing inputs was told wrong.
+/// fewer are left to speak against a wrong one, and the margin grows as their number falls. One sign of 200 pads with one or two
+/// missing inputs is told wrong all the same.
 pub const MARGIN: f64 = 10.0;
 const EQUATIONS: f64 = 4.0;
 /// Mean cost of a deed from which it is another pad, or where something else was done than asked. Of pads whose gains scatter by a tenth, or

@@ -4,6 +4,8 @@
 //! software falls silent, and a bridge rightly lets go. The others wait for states.
 #![cfg(target_os = "linux")]
 
+mod arduino;
+mod bench;
 #[cfg(test)]
 #[path = "../support/c_compiler.rs"]
 mod c_compiler;

@@ -9,6 +9,7 @@
 )]
 
 mod background;
+mod bench;
 mod calibrated;
 mod campaign;
 mod case;

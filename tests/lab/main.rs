@@ -1,6 +1,7 @@
 //! What the laboratory finds out about a pad, from measured tables to decoders and figures of merit.
 
 mod ablation;
+mod bench;
 mod calibration;
 mod changes;
 mod force_range;

@@ -14,7 +14,9 @@ use crate::transport::fault::{FaultPlan, FaultyLine};
 use crate::transport::lines;
 use crate::transport::opener::{Opener, PadError};
 use crate::transport::playback::Playback;
+use crate::transport::rewired::RewiredPad;
 use crate::transport::virtual_pad::{PadFirmware, VirtualPadPort};
+use tactpad_core::pad::wiring::permutation::SignedPermutation;
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::reader::{CaptureError, CaptureReader};
 use tactpad_core::source::Lines;
@@ -141,6 +143,15 @@ impl OpenedPad {
             Box::new(move || read(open()?).map_err(|error| PadError::Unusable(error.to_string())))
         });
         Ok(Self { pad, opener, ..self })
+    }
+
+    /// The same pad with its channels as this wiring says, each time it is opened.
+    #[must_use]
+    pub fn with_wiring(self, wiring: Option<SignedPermutation>) -> Self {
+        let Some(wiring) = wiring else { return self };
+        let rewired = move |pad| -> Box<dyn Transport> { Box::new(RewiredPad::new(pad, wiring)) };
+        let opener = self.opener.map(|mut open| -> Reopen { Box::new(move || Ok(rewired(open()?))) });
+        Self { pad: self.pad.map(rewired), opener, ..self }
     }
 
     /// The same pad on a bad line, each time it is opened. Without a plan it stays as it is.

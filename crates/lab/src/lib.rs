@@ -2,6 +2,7 @@
 //! than its model. All of it is computed offline; nothing here runs while a game is played.
 
 pub mod ageing;
+pub mod bench;
 pub mod calibration;
 pub mod contacts;
 pub mod diagnosis;

@@ -21,6 +21,9 @@ pub(super) enum Verb {
     /// Play: a pad in, key and gamepad events out.
     #[cfg(target_os = "linux")]
     Run(live::run::Arguments),
+    /// Measure a new pad for the first time: noise, a known weight, and which channel is wired where.
+    #[cfg(target_os = "linux")]
+    Bench(live::bench::Arguments),
     /// Calibrate a pad at home: presses, a weight on five marks, and a sheet that shows them.
     #[cfg(target_os = "linux")]
     Calibrate(live::calibrate::Arguments),
@@ -60,6 +63,8 @@ pub(super) fn run(verb: &Verb, program: impl FnOnce() -> Command) -> Result<(), 
         Verb::Demo(arguments) => live::demo::run(arguments),
         #[cfg(target_os = "linux")]
         Verb::Run(arguments) => live::run::run(arguments),
+        #[cfg(target_os = "linux")]
+        Verb::Bench(arguments) => live::bench::run(arguments),
         #[cfg(target_os = "linux")]
         Verb::Calibrate(arguments) => live::calibrate::run(arguments),
         Verb::Weigh(arguments) => weigh::run(arguments),

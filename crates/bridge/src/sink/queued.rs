@@ -90,3 +90,58 @@ impl<T> QueuedGroups<T> {
         self.queue.waiting()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::sync::mpsc::{Receiver, channel};
+
+    use proptest::prelude::{ProptestConfig, any, prop, prop_assert, prop_assert_eq, proptest};
+
+    use super::*;
+    use tactpad_core::pipeline::control::{Code, OutputDevice};
+
+    /// A queue of few places whose writer takes a group for each permit, and what it has written.
+    fn gated(permits: Receiver<()>) -> (QueuedGroups<OutputEvent>, Receiver<OutputEvent>) {
+        let (out, written) = channel();
+        let queue = WriteQueue::start("gated", 3, move |events: &[OutputEvent]| {
+            // Without anybody who permits it takes all.
+            let _ = permits.recv();
+            events.iter().for_each(|event| out.send(event.clone()).unwrap());
+            Ok(())
+        });
+        (QueuedGroups::new(queue.unwrap()), written)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Each step changes one of a few keys, or has the writer take some groups.
+        #[test]
+        fn whatever_is_dropped_each_down_has_one_up(steps in prop::collection::vec((any::<bool>(), 0..4_u16), 1..80)) {
+            let (permit, permits) = channel();
+            let (mut groups, written) = gated(permits);
+            let mut held = BTreeMap::new();
+            for (is_permit, number) in steps {
+                if is_permit {
+                    (0..number).for_each(|_| permit.send(()).unwrap());
+                    continue;
+                }
+                let value = held.get(&number).map_or(1, |value: &i32| 1 - value);
+                held.insert(number, value);
+                let event = OutputEvent { device: OutputDevice::Gamepad, code: Code::Key(number), value };
+                groups.write(&[event], Box::new(|| ()), |events| Ok(events.to_vec())).unwrap();
+            }
+            drop(permit);
+            drop(groups);
+            let mut seen = BTreeMap::new();
+            for event in written {
+                let Code::Key(number) = event.code else { continue };
+                prop_assert!(seen.insert(number, event.value).unwrap_or(0) != event.value, "{event:?} was so before");
+            }
+            held.retain(|_, value| *value == 1);
+            seen.retain(|_, value| *value == 1);
+            prop_assert_eq!(seen, held);
+        }
+    }
+}

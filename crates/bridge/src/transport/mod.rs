@@ -3,6 +3,7 @@
 pub mod address;
 pub mod evdev;
 pub mod fault;
+pub mod firmware;
 mod framed;
 pub mod hid;
 pub mod lines;
@@ -10,6 +11,7 @@ pub mod opener;
 mod pacing;
 pub mod pads;
 pub mod playback;
+pub mod rewired;
 pub mod serial;
 mod usb;
 pub mod virtual_pad;

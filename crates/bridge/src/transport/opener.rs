@@ -243,6 +243,7 @@ mod tests {
             ids: (VENDOR_ID, PRODUCT_ID),
             serial_number: serial_number.map(Into::into),
             usb_interface: Some(interface.into()),
+            firmware: None,
         }
     }
 

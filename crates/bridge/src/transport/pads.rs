@@ -6,6 +6,7 @@ use firmware_proto::hid::{PRODUCT_ID, VENDOR_ID};
 use hidapi::HidApi;
 use serialport::SerialPortType;
 
+use super::firmware::Firmware;
 use super::usb;
 
 /// The usage page of the pad's report descriptor: vendor-defined.
@@ -33,6 +34,8 @@ pub struct FoundPad {
     pub serial_number: Option<String>,
     /// The kernel's name of its USB interface, such as `1-1.2:1.0`.
     pub usb_interface: Option<String>,
+    /// The firmware that the plug tells, if it is one of ours.
+    pub firmware: Option<Firmware>,
 }
 
 impl FoundPad {
@@ -81,6 +84,7 @@ pub(super) fn hid_pads(vendor: u16, product: u16) -> Vec<FoundPad> {
                 ids: (device.vendor_id(), device.product_id()),
                 serial_number: device.serial_number().filter(|number| !number.is_empty()).map(Into::into),
                 usb_interface: usb::interface(&path),
+                firmware: device.product_string().and_then(Firmware::of),
                 path,
             }
         })
@@ -98,6 +102,7 @@ pub fn usb_serial_ports() -> Vec<FoundPad> {
             usb_interface: usb::interface(Path::new(&port.port_name)),
             path: port.port_name.into(),
             ids: (usb.vid, usb.pid),
+            firmware: usb.product.as_deref().and_then(Firmware::of),
             serial_number: usb.serial_number.filter(|number| !number.is_empty()),
         }),
         _ => None,

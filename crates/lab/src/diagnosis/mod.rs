@@ -25,7 +25,7 @@ mod causes;
 pub mod conventions;
 pub mod data;
 pub mod extension;
-mod gatekeepers;
+pub(crate) mod gatekeepers;
 mod label;
 pub(crate) mod model;
 mod naming;

@@ -9,19 +9,19 @@ use tactpad::plot::plan::Plan;
 use tactpad::plot::shape::{PaintStyle, Shape};
 use tactpad::quantity::{CHANNEL_NAMES, MODULES};
 
-const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);
+pub(super) const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);
 const PALE: Rgb = Rgb::new(0x9a, 0xa2, 0xab);
-const QUIET: Rgb = Rgb::new(0x52, 0x5b, 0x66);
+pub(super) const QUIET: Rgb = Rgb::new(0x52, 0x5b, 0x66);
 const POST: Rgb = Rgb::new(0xf4, 0xef, 0xdf);
 const EPOXY: Rgb = Rgb::new(0xec, 0xee, 0xf1);
-const INK: Ink = Ink::opaque(DARK);
-const WIRE: Stroke = Stroke::solid(DARK, 1.3);
-const TITLE_SIZE: f64 = 13.0;
-const TEXT_SIZE: f64 = 11.0;
-const NOTE_LINE: f64 = 16.0;
-const MARGIN: f64 = 14.0;
+pub(super) const INK: Ink = Ink::opaque(DARK);
+pub(super) const WIRE: Stroke = Stroke::solid(DARK, 1.3);
+pub(super) const TITLE_SIZE: f64 = 13.0;
+pub(super) const TEXT_SIZE: f64 = 11.0;
+pub(super) const NOTE_LINE: f64 = 16.0;
+pub(super) const MARGIN: f64 = 14.0;
 
-/// All figures with the names of their files.
+/// Bridges, gauges and modules, with the names of their files.
 pub(super) fn of(device: &Device) -> [(&'static str, Figure); 3] {
     [("wiring-bridges", bridges(device)), ("wiring-film", film(device)), ("wiring-plate", plate(device))]
 }
@@ -103,9 +103,36 @@ fn rails(figure: &mut Figure, excitation_v: f64, right: f64) {
     figure.path(Path::strokes(lines, WIRE));
 }
 
-/// One divider at this x, with its tap.
+/// One divider at this x, with its tap and its channel.
 fn half_bridge(figure: &mut Figure, device: &Device, bridge: &HalfBridge, channel: &str, x: f64) {
-    let sides = [(bridge.to_supply, SUPPLY_Y, TAP_Y), (bridge.to_ground, TAP_Y, GROUND_Y)];
+    divider(figure, device, bridge, x, [SUPPLY_Y, TAP_Y, GROUND_Y]);
+    for y in [SUPPLY_Y, TAP_Y, GROUND_Y] {
+        node(figure, [x, y]);
+    }
+    let end = [x + 24.0, TAP_Y];
+    figure.path(Path::strokes(vec![vec![[x, TAP_Y], end]], WIRE));
+    terminal(figure, end);
+    let beside = [end[0] + 8.0, TAP_Y + 0.36 * TEXT_SIZE];
+    figure.text(Text::new(channel, beside, TEXT_SIZE, INK).semi_bold());
+    let sign = if bridge.polarity < 0.0 { "−" } else { "" };
+    let reads = Text::new(format!("{sign}4 (V − δ/2)"), [x, GROUND_Y + 22.0], TEXT_SIZE, INK);
+    figure.text(reads.anchored(Anchor::Middle));
+}
+
+/// Wires that are joined.
+pub(super) fn node(figure: &mut Figure, centre: Point) {
+    figure.add(Mark::Circle(Circle { centre, radius: 2.4, fill: Some(INK), stroke: None }));
+}
+
+/// The gauges of a half-bridge at this x, from supply to tap to ground.
+pub(super) fn divider(
+    figure: &mut Figure,
+    device: &Device,
+    bridge: &HalfBridge,
+    x: f64,
+    [supply_y, tap_y, ground_y]: [f64; 3],
+) {
+    let sides = [(bridge.to_supply, supply_y, tap_y), (bridge.to_ground, tap_y, ground_y)];
     for (gauges, from, to) in sides {
         let step = (to - from) / gauges.len() as f64;
         let mut wire = from;
@@ -118,17 +145,6 @@ fn half_bridge(figure: &mut Figure, device: &Device, bridge: &HalfBridge, channe
         }
         figure.path(Path::strokes(vec![vec![[x, wire], [x, to]]], WIRE));
     }
-    for y in [SUPPLY_Y, TAP_Y, GROUND_Y] {
-        figure.add(Mark::Circle(Circle { centre: [x, y], radius: 2.4, fill: Some(INK), stroke: None }));
-    }
-    let end = [x + 24.0, TAP_Y];
-    figure.path(Path::strokes(vec![vec![[x, TAP_Y], end]], WIRE));
-    terminal(figure, end);
-    let beside = [end[0] + 8.0, TAP_Y + 0.36 * TEXT_SIZE];
-    figure.text(Text::new(channel, beside, TEXT_SIZE, INK).semi_bold());
-    let sign = if bridge.polarity < 0.0 { "−" } else { "" };
-    let reads = Text::new(format!("{sign}4 (V − δ/2)"), [x, GROUND_Y + 22.0], TEXT_SIZE, INK);
-    figure.text(reads.anchored(Anchor::Middle));
 }
 
 /// A resistor about its middle: its gauge on the left, its resistance on the right.
@@ -155,7 +171,7 @@ fn resistance(ratio: f64) -> String {
 }
 
 /// An open end of a wire.
-fn terminal(figure: &mut Figure, centre: Point) {
+pub(super) fn terminal(figure: &mut Figure, centre: Point) {
     let (fill, stroke) = (Some(Ink::opaque(Rgb::WHITE)), Some(WIRE));
     figure.add(Mark::Circle(Circle { centre, radius: 3.4, fill, stroke }));
 }

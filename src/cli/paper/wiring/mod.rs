@@ -1,6 +1,8 @@
 //! `tactpad wiring`: half-bridges, channels and gauges of a device file, so that a module can be wired from it.
 
 mod drawing;
+mod pins;
+mod schematic;
 
 use std::fmt;
 use std::io::Write;
@@ -9,6 +11,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
+use self::pins::FrontEnd;
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Folder;
 use crate::cli::files::device::PadOptions;
@@ -25,7 +28,10 @@ use tactpad::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
 pub(crate) struct Arguments {
     #[command(flatten)]
     pad: PadOptions,
-    /// Write the figures wiring-bridges, wiring-film and wiring-plate into this folder, as SVG and PNG.
+    /// Print where the pins of the converters and of the controller go, instead of bridges, gauges and modules.
+    #[arg(long, conflicts_with = "json")]
+    pins: bool,
+    /// Write the figures wiring-bridges, wiring-film, wiring-plate and wiring-converter into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Print one JSON document.
@@ -40,6 +46,7 @@ struct Wiring {
     channels: [Channel; CHANNELS],
     gauges: [Placed; GAUGES],
     modules: [Site; MODULES],
+    front_end: FrontEnd,
 }
 
 /// A channel with its half-bridge.
@@ -79,9 +86,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let device = arguments.pad.read()?;
     let folder = arguments.figures.as_deref().map(Folder::of).transpose()?;
     if let Some(folder) = &folder {
-        for (name, figure) in drawing::of(&device) {
+        let converter = ("wiring-converter", schematic::schematic(&device));
+        for (name, figure) in drawing::of(&device).into_iter().chain([converter]) {
             pictures::write(folder, name, &figure)?;
         }
+    }
+    if arguments.pins {
+        return Ok(writeln!(stdout(), "{}", FrontEnd::of(&device))?);
     }
     let wiring = Wiring::of(&device);
     if arguments.json { print_json(&wiring) } else { Ok(writeln!(stdout(), "{wiring}")?) }
@@ -104,6 +115,7 @@ impl Wiring {
                 along_x: pose.along_x,
                 along_y: pose.along_y,
             }),
+            front_end: FrontEnd::of(device),
         }
     }
 }
@@ -201,5 +213,6 @@ mod tests {
         assert_eq!(document["excitation_v"], 3.3);
         assert_eq!(document["channels"][5]["to_supply"], serde_json::json!(["R5", "R6"]));
         assert_eq!(document["gauges"][2]["grid_along"], "y");
+        assert_eq!(document["front_end"]["inputs"][5], serde_json::json!({"pin": "AIN2N", "tap": "z"}));
     }
 }

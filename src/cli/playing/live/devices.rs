@@ -31,6 +31,8 @@ struct Listed {
     serial_number: Option<String>,
     /// The address by its place, which stays when names and serial numbers do not tell pads apart.
     place: Option<String>,
+    /// The version of its firmware, and why that restarted, if it is one of ours.
+    firmware: Option<String>,
 }
 
 /// An input device that fits a description inside the program.
@@ -145,7 +147,8 @@ fn listed_among(pad: &FoundPad, all: &[FoundPad]) -> Listed {
         (Attachment::Hid, Some(place)) if all.iter().filter(is_alike).count() > 1 => place.clone(),
         (Attachment::Hid, _) => format!("hid:{vendor:04x}:{product:04x}{number}"),
     };
-    Listed { address, path, serial_number: pad.serial_number.clone(), place }
+    let firmware = pad.firmware.as_ref().map(ToString::to_string);
+    Listed { address, path, serial_number: pad.serial_number.clone(), place, firmware }
 }
 
 fn print(report: &DevicesReport) -> io::Result<()> {
@@ -154,7 +157,9 @@ fn print(report: &DevicesReport) -> io::Result<()> {
         [] => writeln!(out, "no pad is attached; play without one: tactpad demo")?,
         pads => {
             for pad in pads {
-                writeln!(out, "pad   --pad {}   ({}{})", printable(&pad.address), pad.path, at(pad))?;
+                let firmware = pad.firmware.as_ref().map(|it| format!("; firmware {it}")).unwrap_or_default();
+                let facts = printable(&format!("{}{firmware}{}", pad.path, at(pad)));
+                writeln!(out, "pad   --pad {}   ({facts})", printable(&pad.address))?;
             }
         }
     }
@@ -182,6 +187,8 @@ fn at(listed: &Listed) -> String {
 
 #[cfg(test)]
 mod tests {
+    use tactpad::bridge::transport::firmware::Firmware;
+
     use super::*;
 
     fn pad(interface: &str, number: &str) -> FoundPad {
@@ -191,6 +198,7 @@ mod tests {
             ids: (0x1209, 0x0001),
             serial_number: Some(number.into()),
             usb_interface: Some(interface.into()),
+            firmware: Firmware::of("tactpad pad 0.1.0"),
         }
     }
 

@@ -17,7 +17,8 @@ use crate::cli::printing::written::{print_json, printable, stdout};
 use tactpad::bridge::control::ask;
 use tactpad::bridge::sink::uinput;
 use tactpad::bridge::sink::x11::LeftDown;
-use tactpad::bridge::transport::pads::{self, FoundPad};
+use tactpad::bridge::transport::firmware::{OLDEST, dotted};
+use tactpad::bridge::transport::pads::{self, Attachment, FoundPad};
 
 /// The rules that give the player access; a test holds their number below that of the seat's.
 const RULES: &str = include_str!("../../../../docs/linux/70-tactpad.rules");
@@ -223,7 +224,30 @@ fn check_pads(pads: &[FoundPad]) -> Vec<Check> {
             Err(_) => Check::bad("pad", format!("{path} may not be opened by you"), install_rules()),
         }
     };
-    pads.iter().map(check).collect()
+    let of_pad = |pad: &FoundPad| [Some(check(pad)), check_firmware(pad)];
+    pads.iter().flat_map(of_pad).flatten().collect()
+}
+
+/// The firmware of a pad, if it is one of ours.
+fn check_firmware(pad: &FoundPad) -> Option<Check> {
+    let (name, path, firmware) = ("firmware", pad.path.display(), pad.firmware.as_ref()?);
+    let message = printable(&format!("{path} has {firmware}"));
+    if firmware.is_old() {
+        let begin = match pad.attachment {
+            Attachment::Serial => format!(" && stty -F {path} 1200"),
+            Attachment::Hid => "   (and hold BOOTSEL while you plug the board in)".into(),
+        };
+        let message = format!(
+            "{message}, which is older than the wire's specification, all of which {} has; build a new one, and copy tactpad-pico.uf2 to \
+             the drive that appears",
+            dotted(OLDEST)
+        );
+        return Some(Check::bad(name, message, format!("firmware-proto/pico/build{begin}")));
+    }
+    Some(match &firmware.restarted {
+        Some(_) => Check::note(name, format!("{message}: it began anew by itself")),
+        None => Check::good(name, message),
+    })
 }
 
 /// Programs that open serial ports of their own accord.
@@ -367,6 +391,7 @@ fn bridge_message(status: &str) -> String {
 #[cfg(test)]
 mod tests {
     use tactpad::bridge::transport::evdev::battery::Battery;
+    use tactpad::bridge::transport::firmware::Firmware;
 
     use super::*;
 
@@ -410,6 +435,30 @@ mod tests {
         };
         assert_eq!(found(Battery::Volts(5.2))[1], ("battery", Finding::Good));
         assert_eq!(found(Battery::Percent(9))[1], ("battery", Finding::Note));
+    }
+
+    #[test]
+    fn an_old_firmware_is_told_with_the_way_to_a_new_one() {
+        let pad = |attachment, product: &str| FoundPad {
+            attachment,
+            path: "/dev/ttyACM0".into(),
+            ids: (0x1209, 0x0001),
+            serial_number: None,
+            usb_interface: None,
+            firmware: Firmware::of(product),
+        };
+        let check = |attachment, product: &str| check_firmware(&pad(attachment, product));
+        let found = |product: &str| check(Attachment::Serial, product).map(|it| it.finding);
+        assert_eq!(found("Pico"), None);
+        assert_eq!(found("tactpad pad 0.1.0"), Some(Finding::Good));
+        assert_eq!(found("tactpad pad 0.1.0 (restarted: stood still)"), Some(Finding::Note));
+        for (attachment, way) in
+            [(Attachment::Serial, "stty -F /dev/ttyACM0 1200"), (Attachment::Hid, "BOOTSEL")]
+        {
+            let old = check(attachment, "tactpad pad 0.0.9").unwrap();
+            assert_eq!(old.finding, Finding::Bad);
+            assert!(old.message.contains("0.0.9, which is older") && old.mend.unwrap().contains(way));
+        }
     }
 
     #[test]

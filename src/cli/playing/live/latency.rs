@@ -10,6 +10,7 @@ use super::described::{DescribedPad, SourceOption};
 use super::files::Files;
 use super::output::Output;
 use super::playing::{Audience, TerminalHost, microseconds, open_pad, play, requests};
+use super::wired::WiringOption;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;
@@ -41,6 +42,8 @@ pub(crate) struct Arguments {
     pad: PadAddress,
     #[command(flatten)]
     source: SourceOption,
+    #[command(flatten)]
+    wired: WiringOption,
     #[command(flatten)]
     device: PadOptions,
     /// A profile's name or file.
@@ -74,6 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
     let profile = profile::read(profile, output.choice())?;
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), Patience::Limited)?;
+    let opened = opened.with_wiring(arguments.wired.wiring);
     let timing = Timing::default();
     let sink = timing.sink(open_sink(output)?);
     let way = format!("{pad} → {} → {}", decoder.name, sink.describe());

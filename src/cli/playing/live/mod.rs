@@ -2,6 +2,7 @@
 
 #[cfg(feature = "tray")]
 pub(crate) mod alone;
+pub(super) mod bench;
 pub(super) mod calibrate;
 #[cfg(feature = "dashboard")]
 mod calibrated;
@@ -15,6 +16,7 @@ pub(super) mod doctor;
 mod files;
 mod follower;
 pub(crate) mod guardian;
+mod guided_pad;
 mod keeping;
 mod kept_play;
 #[cfg(feature = "tray")]
@@ -37,3 +39,4 @@ mod screen;
 mod sound;
 #[cfg(feature = "tray")]
 mod tray_profiles;
+mod wired;

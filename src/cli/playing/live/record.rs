@@ -14,6 +14,7 @@ use super::output::Output;
 use super::playing::{
     Audience, TerminalHost, WaitOption, create_capture, microseconds, open_pad, patience, play, requests,
 };
+use super::wired::WiringOption;
 use super::{chosen, runtime};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
@@ -42,6 +43,8 @@ pub(crate) struct Arguments {
     pad: PadAddress,
     #[command(flatten)]
     source: SourceOption,
+    #[command(flatten)]
+    wired: WiringOption,
     #[command(flatten)]
     device: PadOptions,
     /// A profile's name or file; it is kept in the capture, and so is the decoder.
@@ -86,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (sink, missing) = output.open_or(|| Newest::default().sink(false))?;
     let patience = patience(&arguments.pad, WaitOption::NotGiven);
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), patience)?;
-    let opened = opened.with_faults(arguments.faults)?;
+    let opened = opened.with_wiring(arguments.wired.wiring).with_faults(arguments.faults)?;
     let place = capture.display().to_string();
     let capture = Named::new(create_capture(capture)?, place.clone());
     if let Some(missing) = missing {

@@ -16,6 +16,7 @@ use super::playing::{Audience, TerminalHost, WaitOption, microseconds, open_pad,
 use super::profile_selection;
 use super::runtime::BridgeName;
 use super::screen::Screen;
+use super::wired::WiringOption;
 use super::{chosen, runtime};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
@@ -44,6 +45,8 @@ pub(crate) struct Arguments {
     wait: bool,
     #[command(flatten)]
     source: SourceOption,
+    #[command(flatten)]
+    wired: WiringOption,
     #[command(flatten)]
     device: PadOptions,
     /// A profile's name or file; it is read again when it is changed. Or auto[:NAME]: the one whose [[program]] is in front, else NAME.
@@ -91,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let newest = Newest::default();
     let (sink, missing) = output.open_or(|| newest.sink(is_shown))?;
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), patience)?;
-    let opened = opened.with_faults(arguments.faults)?;
+    let opened = opened.with_wiring(arguments.wired.wiring).with_faults(arguments.faults)?;
     let name = &profile.profile().name;
     let title = format!("{} → {} → {name} → {}", arguments.pad, decoder.name, sink.describe());
     let title = printable(&title);

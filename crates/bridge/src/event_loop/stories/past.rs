@@ -118,15 +118,6 @@ fn a_pad_that_begins_anew_in_its_first_samples_has_its_zero_measured_anew() {
 }
 
 #[test]
-fn a_clock_that_is_too_fast_on_a_line_that_loses_half_is_named() {
-    let bad =
-        [(0, LossPermille(300)), (0, DamagePermille(300)), (0, Rate(500)), (0, PLUG_IN), (0, Pace(3_000))];
-    let anew =
-        [(2_672, PullOut), (0, PLUG_IN), (0, Rate(100)), (0, Damage(70)), (10_206, Touch(RIGHT)), (0, Mend)];
-    holds(&[&bad[..], &anew].concat());
-}
-
-#[test]
 fn channels_that_stand_one_after_the_other_are_named() {
     holds(&[(0, Mend), (0, Off(3, Stuck)), (13_000, Off(7, Stuck)), (7_000, Mend)]);
 }

@@ -5,8 +5,8 @@
 
 use rayon::prelude::*;
 
-use super::wiring::SignedPermutation;
 use tactpad_core::pad::field::PadField;
+use tactpad_core::pad::wiring::permutation::SignedPermutation;
 use tactpad_core::pipeline::contact::inverse::Inverse;
 use tactpad_core::pipeline::contact::uncertainty::{Estimate, Noise};
 use tactpad_core::quantity::{CHANNELS, Strain};

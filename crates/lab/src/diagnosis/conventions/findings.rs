@@ -3,11 +3,11 @@
 use super::detection::{Conventions, LabelPart};
 use super::stuck::StuckLabel;
 use super::symmetry::Readings;
-use super::wiring::SignedPermutation;
 use crate::diagnosis::data::target::{LabelColumns, Target};
 use crate::diagnosis::report::{Estimate, Finding, LabelNote, Notice, rows_text};
 use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
+use tactpad_core::pad::wiring::permutation::SignedPermutation;
 use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS};
 use tactpad_core::tables::convention::{Frame, LabelConvention, Sign};
 use tactpad_core::tables::measured::{Label, Table};

@@ -12,7 +12,6 @@ mod findings;
 mod mapping;
 mod stuck;
 mod symmetry;
-mod wiring;
 
 pub use self::detection::{Conventions, LabelPart};
 pub use self::findings::refusal;

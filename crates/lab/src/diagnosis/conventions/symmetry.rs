@@ -3,9 +3,9 @@
 //! A pad of three modules is the same after a third of a turn, as its mirror image, and with all forces reversed, but for the order and the
 //! signs of its channels: s(g c) = P s(c) for contacts c, with a map g of contacts and a signed permutation P.
 
-use super::wiring::SignedPermutation;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
+use tactpad_core::pad::wiring::permutation::SignedPermutation;
 use tactpad_core::quantity::{CHANNELS, Contact};
 use tactpad_core::tables::convention::{Frame, LabelConvention, PlaneMap, Sign};
 use tactpad_core::tables::measured::Label;

@@ -1,8 +1,8 @@
 use super::*;
-use crate::diagnosis::conventions::wiring::SignedPermutation;
 use crate::tangent::SimulatedPad;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
+use tactpad_core::pad::wiring::permutation::SignedPermutation;
 use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS, Contact};
 use tactpad_core::tables::convention::LabelConvention;
 use tactpad_core::tables::measured::{Label, Row, Table};

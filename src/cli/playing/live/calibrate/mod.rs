@@ -2,7 +2,7 @@
 
 mod hands;
 pub(super) mod kept;
-mod screen;
+pub(super) mod screen;
 mod session;
 mod words;
 
@@ -18,6 +18,7 @@ use self::kept::{SessionFiles, SessionStart};
 use self::screen::{SessionHost, SessionScreen};
 use self::session::Session;
 use super::playing::{Audience, TerminalHost, WaitOption, open_pad, patience, play, requests};
+use super::wired::WiringOption;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::destination::Destination;
@@ -59,6 +60,8 @@ pub(crate) struct Arguments {
     /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], or virtual, which does what is asked.
     #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
+    #[command(flatten)]
+    wired: WiringOption,
     #[command(flatten)]
     device: PadOptions,
     /// The weight that is put on the marks, in grams; without it the force's scale stays unknown.
@@ -185,11 +188,13 @@ fn begin(out: &Path, fresh: bool, guide: &mut Guide, head: &Head) -> Result<Sess
 
 /// The pad, and hands for one that has none.
 fn open(arguments: &Arguments, profile: &Profile) -> Result<(OpenedPad, Option<Hands>), Failure> {
+    let wiring = arguments.wired.wiring;
     if arguments.pad == PadAddress::Virtual {
-        return hands::open(&arguments.device).map(|(pad, hands)| (pad, Some(hands)));
+        return hands::open(&arguments.device).map(|(pad, hands)| (pad.with_wiring(wiring), Some(hands)));
     }
     let patience = patience(&arguments.pad, WaitOption::NotGiven);
-    Ok((open_pad(&arguments.pad, None, &arguments.device, profile, patience)?, None))
+    let opened = open_pad(&arguments.pad, None, &arguments.device, profile, patience)?;
+    Ok((opened.with_wiring(wiring), None))
 }
 
 /// The parts of a session: the pad and its bridge, the guide, and the files.

@@ -14,13 +14,13 @@ use tactpad::lab::play::guide::Guide;
 use tactpad::lab::play::words::wrong;
 
 /// Hands on what the bridge tells of the pad, so that it stands among the session's lines.
-pub(super) struct SessionHost {
+pub(crate) struct SessionHost {
     terminal: TerminalHost,
     tell: Sender<String>,
 }
 
 impl SessionHost {
-    pub(super) const fn new(terminal: TerminalHost, tell: Sender<String>) -> Self {
+    pub(crate) const fn new(terminal: TerminalHost, tell: Sender<String>) -> Self {
         Self { terminal, tell }
     }
 }

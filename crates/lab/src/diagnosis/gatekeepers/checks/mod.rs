@@ -5,7 +5,7 @@ pub(crate) mod clock;
 pub(crate) mod dead;
 pub(crate) mod excess;
 pub(crate) mod intermittent;
-mod line;
+pub(crate) mod line;
 pub(crate) mod mains;
 pub(crate) mod missing;
 pub(crate) mod steps;

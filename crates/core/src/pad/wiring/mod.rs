@@ -13,6 +13,9 @@
 //! Source: Wu et al., *Sensors* 2026, 26(4), 1378, section 2.2, the equations of the signals; the paper's printed Vx and
 //! Vy pair the gauges otherwise (`docs/contradictions.md`).
 
+pub mod front_end;
+pub mod permutation;
+
 use super::device::GAUGES;
 
 /// One half-bridge of each module. Gauges are counted from 0: R1 is 0.

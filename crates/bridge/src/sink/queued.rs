@@ -100,6 +100,7 @@ mod tests {
 
     use super::*;
     use tactpad_core::pipeline::control::{Code, OutputDevice};
+    use tactpad_core::time::StreamInstant;
 
     /// A queue of few places whose writer takes a group for each permit, and what it has written.
     fn gated(permits: Receiver<()>) -> (QueuedGroups<OutputEvent>, Receiver<OutputEvent>) {
@@ -129,7 +130,7 @@ mod tests {
                 }
                 let value = held.get(&number).map_or(1, |value: &i32| 1 - value);
                 held.insert(number, value);
-                let event = OutputEvent { device: OutputDevice::Gamepad, code: Code::Key(number), value };
+                let event = OutputEvent { at: StreamInstant::default(), device: OutputDevice::Gamepad, code: Code::Key(number), value };
                 groups.write(&[event], Box::new(|| ()), |events| Ok(events.to_vec())).unwrap();
             }
             drop(permit);

@@ -38,6 +38,9 @@ pub enum State {
     Refused,
 }
 
+/// Where a larger share of frames is lost a zero is hardly ever measured, in percent.
+const LOSS_WITHOUT_ZERO_PERCENT: f32 = 25.0;
+
 impl State {
     pub(super) fn of(pipeline: &Pipeline, no_pad_reason: Option<NoPadReason>) -> Self {
         match (pipeline.phase(), no_pad_reason) {
@@ -57,11 +60,14 @@ impl State {
         }
     }
 
-    /// Whether this may be why. Frames that are lost do not keep a zero from being measured; and of a pad that says nothing at all neither
+    /// Whether this may be why. A few lost frames do not keep a zero from being measured; and of a pad that says nothing at all neither
     /// lost frames nor a channel that stood is the reason.
     pub(super) const fn may_come_of(self, finding: &LineFinding) -> bool {
         match finding {
-            LineFinding::Loss { .. } => matches!(self, Self::Doubtful),
+            LineFinding::Loss { percent } => {
+                matches!(self, Self::Doubtful)
+                    || matches!(self, Self::Taring) && *percent >= LOSS_WITHOUT_ZERO_PERCENT
+            }
             LineFinding::ChannelStands { .. } => {
                 matches!(self, Self::Taring | Self::Loaded | Self::Doubtful | Self::Faulty)
             }

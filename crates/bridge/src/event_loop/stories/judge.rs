@@ -246,6 +246,10 @@ impl Judge {
     /// What was told since is true.
     fn are_told_true(&mut self, play: &Play) -> Result<(), Broken> {
         let now = play.now;
+        if play.bridge.driver.pipeline.phase() == Phase::Weighing {
+            // It goes on after something hid it.
+            self.causes.note(now, Cause::Weighing);
+        }
         let messages = play.messages.0.lock().unwrap();
         for line in &messages[self.told.len()..] {
             self.told.push(now);

@@ -22,8 +22,6 @@ const ADDITIVE_UV: f64 = 8.0;
 const SHARE: f64 = 0.02;
 /// Pads of one kind have the same gauges and amplifiers: their noise is alike to some ten percent, as after fifty readings.
 const PSEUDO_READINGS_OF_KIND: f64 = 50.0;
-/// So are the channels of one pad: what all of them show counts in each as so many.
-const PSEUDO_READINGS_OF_CHANNELS: f64 = 30.0;
 /// Standard deviation of a gain that all channels share; its prior counts as thirty contacts.
 const GAIN: f64 = 0.006;
 const GAIN_PSEUDO_CONTACTS: f64 = 30.0;
@@ -55,8 +53,6 @@ pub(crate) struct NoisePrior {
     pub(crate) noise: Noise,
     /// Readings that it counts as.
     pseudo_readings: f64,
-    /// Whether it is of channels of which none is known.
-    is_of_any: bool,
 }
 
 impl NoisePrior {
@@ -68,19 +64,13 @@ impl NoisePrior {
             ..Noise::of_channels([ADDITIVE_UV; CHANNELS], [SHARE; CHANNELS])
         },
         pseudo_readings: PSEUDO_READINGS,
-        is_of_any: true,
     };
 
     /// Of a pad of the same kind as one with this noise.
     pub(crate) const fn of_kind(noise: &Noise) -> Self {
         let Noise { additive_uv, share, force_uv_per_n, gain, .. } = *noise;
         let noise = Noise { force_uv_per_n, gain, ..Noise::of_channels(additive_uv, share) };
-        Self { noise, pseudo_readings: PSEUDO_READINGS_OF_KIND, is_of_any: false }
-    }
-
-    /// The same where each channel tells its own noise.
-    pub(crate) const fn of_each(self) -> Self {
-        Self { is_of_any: false, ..self }
+        Self { noise, pseudo_readings: PSEUDO_READINGS_OF_KIND }
     }
 
     /// Readings that it counts as.
@@ -107,17 +97,10 @@ pub(crate) struct SquaredResidual {
 }
 
 /// The variance components of each channel, none of them negative, by its squared residuals. The standard deviation of a
-/// squared residual is proportional to σ², so its weight is 1/σ⁴: iteratively reweighted least squares. Of a pad of which nothing is
-/// known the components of all channels together are the prior of each: twenty contacts do not tell nine channels' noise, but nine
-/// channels tell how good the amplifiers are.
+/// squared residual is proportional to σ², so its weight is 1/σ⁴: iteratively reweighted least squares.
 pub(crate) fn from_residuals(residuals: &[Vec<SquaredResidual>; CHANNELS], prior: &NoisePrior) -> Noise {
-    let of_all =
-        prior.is_of_any.then(|| parts(residuals.iter().flatten(), &prior.parts(0), prior.pseudo_readings));
-    let of_channel = |k: usize| match &of_all {
-        Some(of_all) => parts(&residuals[k], of_all, PSEUDO_READINGS_OF_CHANNELS),
-        None => parts(&residuals[k], &prior.parts(k), prior.pseudo_readings),
-    };
-    let parts: [[f64; PARTS]; CHANNELS] = std::array::from_fn(|k| of_channel(k).map(f64::sqrt));
+    let parts: [[f64; PARTS]; CHANNELS] =
+        std::array::from_fn(|k| parts(&residuals[k], &prior.parts(k), prior.pseudo_readings).map(f64::sqrt));
     let mut noise = Noise::of_channels(
         parts.map(|[own, ..]| own.max(ADDITIVE_MIN_UV)),
         parts.map(|[_, share, _]| share.max(SHARE_MIN)),
@@ -272,17 +255,12 @@ fn off_along_force(decoder: &Inverse, strain: &Strain, written_n: &[f64; 3]) -> 
 }
 
 /// The variance components a², b², c² of a channel. The prior counts as `pseudo_readings` readings.
-fn parts<'r>(
-    residuals: impl IntoIterator<Item = &'r SquaredResidual, IntoIter: Clone>,
-    prior: &[f64; PARTS],
-    pseudo_readings: f64,
-) -> [f64; PARTS] {
-    let residuals = residuals.into_iter();
-    let count = residuals.clone().count().max(1) as f64;
+fn parts(residuals: &[SquaredResidual], prior: &[f64; PARTS], pseudo_readings: f64) -> [f64; PARTS] {
+    let count = residuals.len().max(1) as f64;
     let typical =
-        |of: fn(&SquaredResidual) -> f64| residuals.clone().map(|it| of(it).powi(2)).sum::<f64>() / count;
+        |of: fn(&SquaredResidual) -> f64| residuals.iter().map(|it| of(it).powi(2)).sum::<f64>() / count;
     let (uv2, n2) = (typical(|it| it.uv), typical(|it| it.force_n));
-    let measured = residuals.clone().map(|it| Squared {
+    let measured = residuals.iter().map(|it| Squared {
         terms: [1.0, it.uv * it.uv, it.force_n * it.force_n],
         square: it.square_uv2,
         count: 1.0,

@@ -174,9 +174,7 @@ impl NoiseModel {
             let state = smoothed.as_ref().map(|it| (&it.mean[at], &it.covariance[at]));
             self.add_squares(residual, state, freedom_ratio, &mut squares);
         }
-        // A minute of play has readings enough of each channel.
-        let prior = if smoothed.is_some() { self.prior.of_each() } else { self.prior };
-        let mut noise = super::from_residuals(&squares.noise, &prior);
+        let mut noise = super::from_residuals(&squares.noise, &self.prior);
         if let Some(smoothed) = smoothed {
             noise.share = self.lasting_share(&smoothed.variance, residuals.len());
         }

@@ -7,8 +7,7 @@ use std::mem::discriminant;
 
 use serde::Serialize;
 
-use crate::pipeline::link::SILENCE_MAX_US;
-use crate::pipeline::link::reading::Reading;
+use crate::pipeline::link::reading::{Reading, SILENCE_MAX_US};
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
 use crate::time::HostInstant;
 

@@ -17,9 +17,7 @@ use crate::time::{HostInstant, StreamInstant};
 use clock::StreamClock;
 use order::{OtherRun, Run, SequenceStep};
 use reading::Reading;
-
-/// Without a sample for this long the link counts as lost. Everything is released then, well inside 100 ms.
-pub const SILENCE_MAX_US: u64 = 80_000;
+pub use reading::SILENCE_MAX_US;
 
 /// A pad of which nothing at all came for so long is not slow.
 const QUIET_US: u64 = 1_000_000;

@@ -6,6 +6,9 @@ use firmware_proto::sample::{Sample, Status};
 
 use crate::quantity::CHANNELS;
 
+/// Without a sample for this long the link counts as lost. Everything is released then, well inside 100 ms.
+pub const SILENCE_MAX_US: u64 = 80_000;
+
 /// One measurement of a pad: when by its own account, what is wrong with it, and what was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {

@@ -130,7 +130,7 @@ fn a_sequence_number_of_eight_bits_is_told_before_what_comes_of_it() {
     assert!(!tells(&play, "lift the finger"));
 }
 
-/// A pad that lost a tenth of its frames, or whose channel stood, and then says nothing.
+/// A pad that lost a tenth of its frames, whose channel stood or whose clock was too fast, and then says nothing.
 #[test]
 fn a_pad_that_falls_silent_is_told_to_be_silent_whatever_its_line_had() {
     let losing = |play: &mut Play| {
@@ -142,14 +142,19 @@ fn a_pad_that_falls_silent_is_told_to_be_silent_whatever_its_line_had() {
         play.wiring = Box::new(|_, counts| counts[7] = 1_234);
         play.press(0.0, 10);
     };
-    let lines: [(&str, &dyn Fn(&mut Play)); 2] = [("10.0 %", &losing), ("channel m2y reads 1234", &standing)];
+    let too_fast = |play: &mut Play| {
+        play.us_per_ms = 3_000;
+        play.press(0.0, 10);
+    };
+    let lines: [(&str, &dyn Fn(&mut Play)); 3] =
+        [("10.0 %", &losing), ("channel m2y reads 1234", &standing), ("the pad's clock", &too_fast)];
     for (begin, line) in lines {
         let mut play = Play::start();
         (0..500).for_each(|_| line(&mut play));
         let told = play.messages.clone();
         let last = || told.0.lock().unwrap().last().cloned().unwrap_or_default();
         assert!(last().starts_with(begin), "{}", last());
-        play.wait(2_000);
+        play.wait(3_000);
         assert_eq!(last(), State::Silent.sentence());
     }
 }

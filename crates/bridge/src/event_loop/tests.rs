@@ -138,25 +138,26 @@ fn a_pad_that_falls_silent_is_told_to_be_silent_whatever_its_line_had() {
         play.sample(&Contact::default());
         play.wait(1);
     };
-    let standing = |play: &mut Play| {
+    is_told_before_silence("10.0 %", losing);
+    is_told_before_silence("channel m2y reads 1234", |play| {
         play.wiring = Box::new(|_, counts| counts[7] = 1_234);
         play.press(0.0, 10);
-    };
-    let too_fast = |play: &mut Play| {
+    });
+    is_told_before_silence("the pad's clock", |play| {
         play.us_per_ms = 3_000;
         play.press(0.0, 10);
-    };
-    let lines: [(&str, &dyn Fn(&mut Play)); 3] =
-        [("10.0 %", &losing), ("channel m2y reads 1234", &standing), ("the pad's clock", &too_fast)];
-    for (begin, line) in lines {
-        let mut play = Play::start();
-        (0..500).for_each(|_| line(&mut play));
-        let told = play.messages.clone();
-        let last = || told.0.lock().unwrap().last().cloned().unwrap_or_default();
-        assert!(last().starts_with(begin), "{}", last());
-        play.wait(3_000);
-        assert_eq!(last(), State::Silent.sentence());
-    }
+    });
+}
+
+/// That what is wrong with this line is told, and then that it is silent.
+fn is_told_before_silence(begin: &str, line: impl Fn(&mut Play)) {
+    let mut play = Play::start();
+    (0..500).for_each(|_| line(&mut play));
+    let told = play.messages.clone();
+    let last = || told.0.lock().unwrap().last().cloned().unwrap_or_default();
+    assert!(last().starts_with(begin), "{}", last());
+    play.wait(3_000);
+    assert_eq!(last(), State::Silent.sentence());
 }
 
 #[test]

@@ -108,7 +108,7 @@ mod tests {
         let queue = WriteQueue::start("gated", 3, move |events: &[OutputEvent]| {
             // Without anybody who permits it takes all.
             let _ = permits.recv();
-            events.iter().for_each(|event| out.send(event.clone()).unwrap());
+            events.iter().for_each(|event| out.send(*event).unwrap());
             Ok(())
         });
         (QueuedGroups::new(queue.unwrap()), written)

@@ -73,7 +73,7 @@ pub struct WeightReport {
     pub decoded: Option<Contact>,
     /// Deviation of the normal force in a single sample, N.
     pub resolution_n: f64,
-    /// The same of the mean of [`MEAN_S`] seconds.
+    /// The same of the mean of 10 ms, N.
     pub mean_resolution_n: f64,
 }
 

@@ -149,14 +149,8 @@ impl Causes {
         self.off_since_sound[channel].is_some_and(|at| now.us_since(at) <= us)
     }
 
-    /// If it keeps the pad from playing still, it does so as if it were there at `now`.
-    pub(super) fn renew(&mut self, now: HostInstant, cause: Cause) {
-        if !self.has_passed(now, cause) {
-            self.note(now, cause);
-        }
-    }
-
-    fn has_passed(&self, now: HostInstant, cause: Cause) -> bool {
+    /// Whether it no longer keeps a pad from playing.
+    pub(super) fn has_passed(&self, now: HostInstant, cause: Cause) -> bool {
         self.there[cause as usize].is_none_or(|at| now.us_since(at) > cause.aftermath_us())
     }
 

@@ -228,10 +228,11 @@ impl World {
         self.play.time_us = shown_us;
     }
 
-    /// A clock in doubt is looked at from here on.
+    /// A clock in doubt is looked at from here on, and what it does is found.
     fn doubt_clock(&mut self) {
-        for cause in [Cause::Clock, Cause::Late] {
-            self.judge.causes.renew(self.play.now, cause);
+        let (now, causes) = (self.play.now, &mut self.judge.causes);
+        if [Cause::Clock, Cause::Late].into_iter().any(|cause| !causes.has_passed(now, cause)) {
+            causes.note(now, Cause::Clock);
         }
     }
 

@@ -318,6 +318,7 @@ fn two_minutes_of_play_and_a_weight_are_worth_twenty_labels_on_twenty_pads() {
     let all = [HOME, UNWEIGHED, LONGER, NEAR, WEIGHT_ALONE].map(|by| Compared::of(by, &pads, &rig));
     let [home, unweighed, longer, near, weight_alone] = all;
     assert!(home.place[0] <= 1.3 && home.force[0] <= 1.3, "{home:?}");
+    assert!(home.inside > 0.92, "{home:?}");
     assert!(longer.place[0] <= 1.15 && longer.force[0] <= 1.15, "{longer:?}");
     assert!(home.place[0] <= 0.85 * weight_alone.place[0], "{home:?} {weight_alone:?}");
     assert!(near.place[1] <= 2.2 && near.force[1] <= 2.2, "{near:?}");

@@ -2,6 +2,8 @@
 
 #[path = "tidy/circles.rs"]
 mod circles;
+#[path = "tidy/supply.rs"]
+mod supply;
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -54,12 +54,8 @@ pub(super) struct Run {
 impl Run {
     /// It begins with this sample, heard at `now`.
     pub(super) const fn beginning(now: HostInstant, first: &Reading) -> Self {
-        let mut run = Self {
-            newest: [None; KEPT],
-            first: first.sequence,
-            last: *first,
-            prompt: (now, first.time_us),
-        };
+        let mut run =
+            Self { newest: [None; KEPT], first: first.sequence, last: *first, prompt: (now, first.time_us) };
         run.newest[Self::place(first)] = Some(*first);
         run
     }

@@ -472,6 +472,8 @@ mod doubt;
 #[cfg(test)]
 mod histories;
 #[cfg(test)]
+mod memory;
+#[cfg(test)]
 mod stories;
 #[cfg(test)]
 mod tests;

@@ -7,6 +7,7 @@ mod browser;
 mod calibrate;
 #[path = "../support/clock.rs"]
 mod clock;
+mod comes_back;
 mod disturbance;
 mod editor;
 mod finger;

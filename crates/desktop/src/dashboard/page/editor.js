@@ -24,6 +24,13 @@ export class ProfileView {
   #opening = null;
   #reading = false;
   #previewed = false;
+  /** @type {import("./kept_drafts.js").KeptDrafts | null} */
+  #drafts = null;
+  /** A draft that this browser has kept, to be opened first. @type {import("./kept_drafts.js").KeptDraft | null} */
+  #found = null;
+  #leaving = false;
+  /** What is to be read once the draft was checked. */
+  #told = "";
 
   constructor(section) {
     this.section = section;
@@ -33,8 +40,9 @@ export class ProfileView {
     this.body = el("div");
     section.append(this.bar, this.body);
     section.addEventListener("keydown", (event) => this.#shortcut(event));
-    addEventListener("beforeunload", (event) => this.draft.dirty && event.preventDefault());
+    addEventListener("beforeunload", (event) => this.draft.dirty && !this.#leaving && event.preventDefault());
     this.draft.addEventListener("text", () => this.text?.showText());
+    for (const change of ["text", "typed", "checked"]) this.draft.addEventListener(change, () => this.#keep());
     this.draft.addEventListener("checked", () => this.#checked());
     this.draft.addEventListener("failed", ({ detail }) => this.#tell(detail));
   }
@@ -45,12 +53,12 @@ export class ProfileView {
     this.redo = button("Redo", () => this.draft.move(1), { id: "redo", class: "main", "aria-keyshortcuts": "Control+Y" });
     this.save = button("Save", () => this.#save(), { id: "save", class: "main primary", "aria-keyshortcuts": "Control+S" });
     this.revert = button("Revert", () => this.draft.replace(this.draft.saved), { id: "revert", class: "main" });
-    const live = el("input", { type: "checkbox", id: "preview", checked: true, onchange: () => this.#allowPreview(live.checked) });
+    this.live = el("input", { type: "checkbox", id: "preview", checked: true, onchange: () => this.#allowPreview(this.live.checked) });
     this.state = el("span", { id: "draft-state" });
     this.message = el("p", { class: "editor-message", role: "status" });
     this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
       el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert,
-      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), el("label", { class: "check main" }, live, "Play the draft live"), this.state, this.message));
+      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), el("label", { class: "check main" }, this.live, "Play the draft live"), this.state, this.message));
   }
 
   /** Makes what needs the schema, once. */
@@ -77,6 +85,7 @@ export class ProfileView {
       this.#ready ??= this.#prepare();
       await this.#ready;
       const playing = await this.#list();
+      if (this.#found !== null) await this.#openFound();
       if (this.#opening !== null) await this.#openWaiting();
       else if (this.#name === null && !this.#reading) await this.#load(playing);
     } catch (error) {
@@ -103,12 +112,16 @@ export class ProfileView {
   async #load(name, text = undefined) {
     this.#reading = true;
     const profile = await readProfile(name).finally(() => { this.#reading = false; });
+    this.#opened(name, profile.version, profile.text, text);
+  }
+
+  #opened(name, version, saved, text) {
     this.#name = name;
-    this.#version = profile.version;
+    this.#version = version;
     this.choice.value = name;
     this.plateHandles.forget();
     this.forceHandles.forget();
-    this.draft.load(profile.text, text);
+    this.draft.load(saved, text);
   }
 
   /** Opens a draft that a guide has made; nothing else is shown before it. */
@@ -124,13 +137,62 @@ export class ProfileView {
     await this.#load(profile, text);
   }
 
+  /** Takes the keeper of unsaved drafts, and the draft that it found. */
+  keepDrafts(drafts, found) {
+    this.#drafts = drafts;
+    this.#found = found;
+    showKept(found);
+  }
+
+  #keep() {
+    if (this.#name === null || this.#reading) return;
+    const { dirty, text } = this.draft;
+    this.#drafts?.keep(dirty ? { profile: this.#name, version: this.#version, text, at_ms: Date.now() } : null);
+  }
+
+  /** Opens what was kept as it was left. It is not played: it may be why the bridge was ended. */
+  async #openFound() {
+    const { profile, version, text, at_ms } = this.#found;
+    this.#found = null;
+    showKept(null);
+    this.live.checked = false;
+    this.#allowPreview(false);
+    const saved = await readProfile(profile).catch(() => null);
+    this.#opened(profile, version, saved?.text ?? "", text);
+    const changed = saved?.version === version ? "" : " The file was changed meanwhile: Save asks before it writes.";
+    this.#told = `Your draft of ${profile} is here as you left it at ${new Date(at_ms).toLocaleTimeString()}. It is not played before you tick “Play the draft live”; Revert drops it.${changed}`;
+    announce(this.#told);
+  }
+
+  /** The bridge is there again. */
+  again() {
+    if (this.#name === null) return;
+    this.preview.again();
+    this.draft.again();
+  }
+
+  /** There is no bridge. */
+  clear() {
+    this.finger?.draw(null, null, null);
+    this.forceHandles?.forces.draw(null);
+    this.#previewed = false;
+    document.getElementById("preview-notice").replaceChildren();
+  }
+
+  /** The page goes elsewhere by itself: everything is kept, and nobody is asked. */
+  leave() {
+    this.#leaving = true;
+    return this.#drafts?.settled();
+  }
+
   #tell(sentence) {
     say(this.message, sentence);
   }
 
   #checked() {
     const focus = document.activeElement?.closest?.("[data-handle], [data-field]");
-    this.#tell("");
+    this.#tell(this.#told);
+    this.#told = "";
     this.text.showDiagnostics();
     this.plate.setSketch(this.draft.sketch);
     this.plateHandles.refresh();
@@ -221,6 +283,14 @@ export class ProfileView {
     notice.replaceChildren(...(preview ? [el("span", { text: `◐ ${sentence}` }), button("Back to the file", () => this.preview.end())] : []));
     announce(preview ? sentence : "The saved profile is played.");
   }
+}
+
+/** Says in every view that a draft is kept. */
+function showKept(found) {
+  const notice = document.getElementById("draft-notice");
+  if (found !== null) announce(`A draft of ${found.profile} that was not saved is kept.`);
+  notice.replaceChildren(...(found === null ? [] : [el("span", { text: `● A draft of ${found.profile} that was not saved is kept.` }), " ",
+    el("a", { class: "action", href: "#profile", text: "Open the draft" })]));
 }
 
 /** Gives the focus back to a handle or field that was made anew. */

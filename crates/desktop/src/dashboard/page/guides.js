@@ -36,6 +36,14 @@ export class GuidesView {
     }
   }
 
+  /** Shows none: whatever ran has ended with its bridge. */
+  clear() {
+    this.#cards.clear();
+    this.list.replaceChildren();
+    say(this.failed, "");
+    say(this.about, "Guides need a bridge.");
+  }
+
   /** Shows a guide as it is now. */
   update(guide) {
     if (!this.#cards.has(guide.id)) {

@@ -94,6 +94,19 @@ export class Status {
     this.#count(status);
   }
 
+  /** Nothing is known any more. */
+  clear() {
+    this.#state = null;
+    say(this.sign, "✕");
+    say(this.word, "not connected");
+    say(this.sentence, "");
+    this.sign.parentElement.className = "state bad";
+    for (const node of this.lines.values()) say(node, "–");
+    say(this.pause, "Pause");
+    this.error.hidden = true;
+    this.countersBody.replaceChildren();
+  }
+
   #changed({ state, sentence }) {
     if (this.#state !== null) announce(sentence ?? state);
     this.#state = state;

@@ -14,6 +14,7 @@ mod finger;
 mod guides;
 mod http;
 mod live;
+mod numbers;
 mod openings;
 mod pictures;
 mod reports;

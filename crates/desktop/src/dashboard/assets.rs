@@ -50,6 +50,7 @@ const FILES: &[(&str, &str)] = &files![
     "main.js",
     "meeting.js",
     "meter.js",
+    "number_field.js",
     "plate.js",
     "plate_handles.js",
     "preview.js",

@@ -87,6 +87,11 @@ export class Draft extends EventTarget {
     return true;
   }
 
+  /** Whether a change of this key is still to be made: what the draft says of it is old. @param {(string | number)[]} path */
+  waitsFor(path) {
+    return this.#waiting.has(place({ table: path.slice(0, -1), key: path.at(-1) }));
+  }
+
   /** Changes values; changes of one `gesture` are one step back. @param {Change[]} changes */
   change(changes, gesture = {}) {
     for (const change of changes) this.#waiting.set(place(change), change);

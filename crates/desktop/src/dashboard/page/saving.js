@@ -30,6 +30,12 @@ function ask(title, body, answers) {
     dialog.append(el("h3", { text: title }), body, el("div", { class: "commands" },
       ...answers.map(({ label, answer }) => button(label, () => close(answer()), { class: answers.length === 1 ? "main primary" : "main" })),
       button("Cancel", () => close(null), { class: "main" })));
+    // Enter in a field does what the first button does.
+    dialog.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" || event.target.tagName !== "INPUT") return;
+      event.preventDefault();
+      close(answers[0].answer());
+    });
     dialog.addEventListener("cancel", (event) => {
       event.preventDefault();
       close(null);

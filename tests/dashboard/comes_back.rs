@@ -86,7 +86,9 @@ fn the_same_tab_goes_on_with_the_draft_of_a_bridge_that_was_killed_also_after_a_
     assert_ne!(shown.host, first, "whoever was there meanwhile may have left something");
     wait_for_draft(&browser, &shown.host, "2.75");
     browser.wait("document.getElementById('draft-state').textContent.includes('not saved')");
-    browser.wait("document.querySelector('.editor-message').textContent.includes('Your draft of contra')");
+    browser.wait("Number(document.documentElement.dataset.updates) > 50");
+    let told = browser.run("return document.querySelector('.editor-message').textContent");
+    assert!(told.as_str().unwrap().contains("Your draft of contra"), "{told}");
     assert_eq!(browser.run("return location.hash"), "#profile");
     assert_eq!(shown.status()["preview"], false, "it may be why the bridge was killed");
     browser.reload();

@@ -25,3 +25,4 @@ mod security;
 mod shown;
 #[path = "../support/mod.rs"]
 mod support;
+mod way_back;

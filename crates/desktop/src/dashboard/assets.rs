@@ -68,6 +68,7 @@ const FILES: &[(&str, &str)] = &files![
     "text.js",
     "trace.js",
     "values.js",
+    "way_back.js",
 ];
 
 /// Answers `GET /`.

@@ -95,6 +95,34 @@ impl DashboardHost for Shelf {
         profile::save(name, text, over)
     }
 
+    fn history(&self, name: &str) -> Value {
+        serde_json::to_value(profile::history(name)).unwrap_or_default()
+    }
+
+    fn saved(&self, name: &str, id: u64) -> Option<String> {
+        profile::saved(name, id)
+    }
+
+    fn delete(&self, name: &str) -> Result<(), SaveError> {
+        profile::delete(name)
+    }
+
+    fn rename(&self, from: &str, to: &str) -> Result<(), SaveError> {
+        profile::rename(from, to)
+    }
+
+    fn decoders(&self) -> Vec<String> {
+        profile::decoders().into_iter().map(|(name, _)| name).collect()
+    }
+
+    fn exported(&self, name: &str, decoder: Option<&str>) -> Option<String> {
+        profile::exported(name, decoder)
+    }
+
+    fn import(&self, document: &str, name: &str) -> Result<Option<String>, SaveError> {
+        profile::import(document, name)
+    }
+
     fn doctor(&self) -> Value {
         serde_json::to_value(doctor::examine()).unwrap_or_default()
     }

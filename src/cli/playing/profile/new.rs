@@ -5,7 +5,7 @@ use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::process::Command;
 
-use super::{chosen, own, verdict};
+use super::{alter, chosen, history, own, verdict};
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{reason, say, stdout};
 use tactpad::pipeline::mapping::read::shipped;
@@ -23,7 +23,7 @@ pub(super) fn new(name: &str, saves: bool) -> Result<(), Failure> {
     if !saves {
         return Ok(stdout().write_all(text.as_bytes())?);
     }
-    let path = own::write(name, &text)?;
+    let path = alter::create(name, &text)?;
     if shipped::text(name).is_some() {
         say(format_args!("it stands before the {name} inside the program"));
     }
@@ -36,7 +36,7 @@ pub(super) fn edit(name: &str) -> Result<(), Failure> {
     let path = match (own::file(name), shipped::text(name)) {
         (Some(path), _) => path,
         (None, Some(text)) => {
-            let path = own::write(name, text)?;
+            let path = alter::create(name, text)?;
             say(format_args!("this copy stands before the {name} inside the program"));
             path
         }
@@ -54,7 +54,9 @@ pub(super) fn edit(name: &str) -> Result<(), Failure> {
         }
     };
     writeln!(stdout(), "{}", path.display())?;
+    history::keep_present(name)?;
     if io::stdin().is_terminal() && io::stdout().is_terminal() && opened(&path)? {
+        history::keep_present(name)?;
         return verdict::run(name, false);
     }
     Ok(())

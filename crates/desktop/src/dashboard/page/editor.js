@@ -14,6 +14,7 @@ import { askConflict, askDrop, askName, readProfile, writeProfile } from "./savi
 import { Schema } from "./schema.js";
 import { TextPane, plural } from "./text.js";
 import { Values } from "./values.js";
+import { WayBack } from "./way_back.js";
 
 export class ProfileView {
   #name = null;
@@ -72,11 +73,16 @@ export class ProfileView {
     this.form = new Form(this.values, schema);
     this.text = new TextPane(this.draft);
     this.rewind = new Rewind(this.draft);
+    this.wayBack = new WayBack({
+      draft: (text, sentence) => this.#showDraft(text, sentence),
+      open: (name) => this.#reopen(name),
+      mayDrop: async () => !this.draft.dirty || await askDrop(this.#name) === true,
+    });
     const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab: arrow keys move it, Page Up and Page Down move it far, Home and End to its limits. Each has a field among the keys." });
     this.body.replaceChildren(el("div", { class: "editor-grid" },
       el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node, hint)),
       el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Keys" }), this.form.node)),
-      el("div", { class: "area-text" }, el("div", { class: "card" }, el("h3", { text: "Text" }), this.text.node), this.rewind.node)));
+      el("div", { class: "area-text" }, el("div", { class: "card" }, el("h3", { text: "Text" }), this.text.node), this.rewind.node, this.wayBack.node)));
   }
 
   /** The view comes into sight. */
@@ -98,7 +104,27 @@ export class ProfileView {
     const { profiles, playing } = await get("/api/profiles");
     this.choice.replaceChildren(...profiles.map(({ name, own }) => el("option", { value: name, text: own ? `${name} (yours)` : name })));
     this.choice.value = this.#name ?? playing;
+    this.profiles = profiles;
     return playing;
+  }
+
+  /** Shows the saves of the profile that is open. */
+  async #showSaves() {
+    const profile = this.profiles.find(({ name }) => name === this.#name);
+    if (profile !== undefined) await this.wayBack.show(profile).catch((error) => this.#tell(error.message));
+  }
+
+  #showDraft(text, sentence) {
+    this.#told = sentence;
+    announce(sentence);
+    this.draft.replace(text);
+  }
+
+  /** Opens a profile of this name, or the one in play with null, whatever becomes of the draft; the list is another one. */
+  async #reopen(name) {
+    this.#name = name;
+    const playing = await this.#list();
+    await this.#load(name ?? playing);
   }
 
   async #open(name) {
@@ -113,6 +139,7 @@ export class ProfileView {
     this.#reading = true;
     const profile = await readProfile(name).finally(() => { this.#reading = false; });
     this.#opened(name, profile.version, profile.text, text);
+    await this.#showSaves();
   }
 
   #opened(name, version, saved, text) {
@@ -162,6 +189,7 @@ export class ProfileView {
     const changed = saved?.version === version ? "" : " The file was changed meanwhile: Save asks before it writes.";
     this.#told = `Your draft of ${profile} is here as you left it at ${new Date(at_ms).toLocaleTimeString()}. It is not played before you tick “Play the draft live”; Revert drops it.${changed}`;
     announce(this.#told);
+    await this.#showSaves();
   }
 
   /** The bridge is there again. */
@@ -246,6 +274,7 @@ export class ProfileView {
       this.draft.markSaved(text);
       this.#tell(`Saved to ${answer.path}.`);
       await this.#list();
+      await this.#showSaves();
     } catch (error) {
       await this.#notSaved(error, name, version);
     }

@@ -63,9 +63,11 @@ function followStatus(views) {
 
 function followConnection(views) {
   live.on("open", () => {
-    if (connection.textContent !== "") announce("tactpad is there again.");
+    const wasLost = connection.textContent !== "";
     say(connection, "");
     views.live.status.listProfiles();
+    if (!wasLost) return;
+    announce("tactpad is there again.");
     views.guides.show();
     views.profile.again();
   });

@@ -59,12 +59,12 @@ export function askDrop(name) {
 }
 
 /** A new name, or null. */
-export async function askName(before) {
+export async function askName(before, title = "Save as …") {
   const field = el("input", { type: "text", id: "new-name", value: before, class: "main" });
   const wrong = el("p", { class: "bad", role: "alert" });
   const body = el("div", {}, el("label", { for: "new-name", text: "Name, without a dot, slash, backslash or colon" }), el("p", {}, field), wrong);
   for (;;) {
-    const name = await ask("Save as …", body, [{ label: "Save", answer: () => field.value.trim() }]);
+    const name = await ask(title, body, [{ label: title.replace(" …", ""), answer: () => field.value.trim() }]);
     if (name === null || NAME.test(name)) return name;
     say(wrong, "✕ A name has no dot, slash, backslash or colon, and is not empty.");
   }

@@ -66,7 +66,8 @@ export class Status {
       this.choice.replaceChildren(...profiles.map(({ name, own }) => el("option", { value: name, text: own ? `${name} (yours)` : name })));
       this.choice.value = playing;
     } catch (error) {
-      failure(error.message);
+      // That there is no answer is told already.
+      if (error.status !== 0) failure(error.message);
     }
   }
 

@@ -165,6 +165,13 @@ impl Browser {
         from_base64(picture.as_str().unwrap())
     }
 
+    /// Lets the page have so many pixels, also fewer than a window can have.
+    pub(crate) fn show_in(&self, width: u32, height: u32) {
+        let params = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
+        let command = json!({"cmd": "Emulation.setDeviceMetricsOverride", "params": params});
+        self.post("goog/cdp/execute", &command);
+    }
+
     /// Makes the window so large.
     pub(crate) fn resize(&self, width: u32, height: u32) {
         self.post("window/rect", &json!({"width": width, "height": height}));

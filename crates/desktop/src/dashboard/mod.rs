@@ -30,5 +30,6 @@ mod rewind;
 mod ring;
 pub mod server;
 mod shadow;
+mod stale_comments;
 pub mod user_key;
 mod websocket;

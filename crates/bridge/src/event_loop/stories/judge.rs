@@ -64,6 +64,8 @@ pub(super) struct Judge {
     /// When it had heard none for a while.
     unheard: HostInstant,
     looked: HostInstant,
+    /// When something was found about the stream last.
+    found: Option<HostInstant>,
     kept_since: Option<HostInstant>,
     /// A press that has to count by then.
     promise: Option<HostInstant>,
@@ -182,6 +184,7 @@ impl Judge {
             self.kept_since.get_or_insert(now);
         }
         let finding = play.bridge.driver.pipeline.line_finding();
+        self.found = finding.map(|_| now).or(self.found);
         // It is about the stream as it was heard last.
         if self.heard.is_none_or(|heard| now.us_since(heard) > RELEASED_US) {
             self.unheard = now;
@@ -220,10 +223,13 @@ impl Judge {
             return broken("the status names what keeps a pad from playing", self.words(play));
         }
         let messages = play.messages.0.lock().unwrap();
+        // What was found stands until it is taken back; what keeps the pad from playing then has its word in time.
+        let stood = self.found.is_some_and(|found| now.us_since(found) <= NAMED_US);
+        let lasts_us = if stood { TAKEN_BACK_US + NAMED_US } else { NAMED_US };
         let is_right = |line: &String| {
             STATES.iter().any(|state| line == state.sentence() && self.causes.explain(now, NAMED_US, *state))
                 || finding.is_some_and(|finding| is_of_kind(line, finding))
-                || self.is_found_so(now, NAMED_US, line) == Some(true)
+                || self.is_found_so(now, lasts_us, line) == Some(true)
         };
         // What was told last of the pad or of its stream lasts still, or may not be told again yet.
         let is_state =

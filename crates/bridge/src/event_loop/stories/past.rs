@@ -350,3 +350,20 @@ fn a_pad_that_begins_anew_with_a_clock_that_runs_is_found_out() {
     let begun = [(0, Rate(100)), (0, Mend), (0, anew), (0, Pace(20_000)), (0, Event::Lose(1_000))];
     holds(&[&begun[..], &[(248, Lift), (0, Mend)]].concat());
 }
+
+#[test]
+fn a_pad_that_begins_anew_after_its_first_frame_came_again_is_found_out() {
+    let again = Restart { time_us: 0, is_flagged: false, offset: -251_203, text: 3 };
+    holds(&[(0, Rate(100)), (0, PLUG_IN), (300, Repeat { age: 500, frames: 4 }), (62, again), (961, Lift)]);
+}
+
+#[test]
+fn a_clock_that_jumps_is_looked_at_from_there_on() {
+    holds(&[(0, PLUG_IN), (0, Pace(1)), (777, Pace(990)), (463, ClockJump(50_328_057)), (0, Mend)]);
+}
+
+#[test]
+fn what_was_found_of_the_clock_stands_until_it_is_taken_back() {
+    let begun = [(0, PLUG_IN), (0, Pace(20_000)), (0, Touch(RIGHT)), (3_000, Lift), (66, Touch(FINGER))];
+    holds(&[&begun[..], &[(0, Pace(1_010)), (2_023, PullOut), (1_000, Rate(1_000))]].concat());
+}

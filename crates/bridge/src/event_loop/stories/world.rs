@@ -222,11 +222,17 @@ impl World {
     fn set_clock(&mut self, time_us: u64) {
         let shown_us = if self.clock_bits < 64 { time_us & ((1 << self.clock_bits) - 1) } else { time_us };
         if shown_us < self.play.time_us {
-            // A clock in doubt is looked at from here on.
-            self.judge.causes.renew(self.play.now, Cause::Clock);
+            self.doubt_clock();
             self.note_moment();
         }
         self.play.time_us = shown_us;
+    }
+
+    /// A clock in doubt is looked at from here on.
+    fn doubt_clock(&mut self) {
+        for cause in [Cause::Clock, Cause::Late] {
+            self.judge.causes.renew(self.play.now, cause);
+        }
     }
 
     /// The pad takes a sample.

@@ -44,6 +44,8 @@ pub(super) enum SequenceStep {
 pub(super) struct Run {
     /// The newest frames, each in the place of its number.
     newest: [Option<Reading>; KEPT],
+    /// The number that it began with.
+    first: u32,
     pub(super) last: Reading,
     /// When a sample was heard without delay, and the pad's time then. Those that a host took late, or a pad kept, come after it.
     prompt: (HostInstant, u64),
@@ -52,7 +54,12 @@ pub(super) struct Run {
 impl Run {
     /// It begins with this sample, heard at `now`.
     pub(super) const fn beginning(now: HostInstant, first: &Reading) -> Self {
-        let mut run = Self { newest: [None; KEPT], last: *first, prompt: (now, first.time_us) };
+        let mut run = Self {
+            newest: [None; KEPT],
+            first: first.sequence,
+            last: *first,
+            prompt: (now, first.time_us),
+        };
         run.newest[Self::place(first)] = Some(*first);
         run
     }
@@ -120,10 +127,12 @@ impl Run {
     /// anew a moment ago sends the same numbers with other contents.
     fn has(&self, frame: &Reading) -> bool {
         let behind = self.last.sequence.wrapping_sub(frame.sequence);
+        // What is older than the run is of another one.
+        let behind_max = self.last.sequence.wrapping_sub(self.first).min(KEPT as u32 - 1);
         match &self.newest[Self::place(frame)] {
             Some(kept) if kept.sequence == frame.sequence => kept == frame,
             _ => {
-                let is_behind = (1..KEPT as u32).contains(&behind) && frame.time_us < self.last.time_us;
+                let is_behind = (1..=behind_max).contains(&behind) && frame.time_us < self.last.time_us;
                 is_behind && !frame.status.restarted()
             }
         }

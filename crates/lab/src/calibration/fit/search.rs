@@ -21,8 +21,8 @@ const THRESHOLDS: i32 = 11;
 const HALVINGS: i32 = 3;
 /// Relaxation times that are tried: between the length of a press and that of a pause.
 const CREEP_TIMES_S: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
-/// Time constants of relative noise that are tried in play.
-pub(crate) const NOISE_TIMES_S: [f64; 4] = [0.7, 2.0, 6.0, 18.0];
+/// Time constants of relative noise that are tried in play: a factor √3 apart, as what a minute tells of a gain goes with them.
+pub(crate) const NOISE_TIMES_S: [f64; 7] = [0.7, 1.2, 2.0, 3.5, 6.0, 10.5, 18.0];
 /// The share of their deviations that stiffnesses, moduli and the plate's thickness may have in play: pads that are built alike.
 const ALIKE: f64 = 0.25;
 /// ln of the Bayes factor that a richer hypothesis (a play operator, creep, another pad's field) must exceed.
@@ -51,7 +51,7 @@ impl<'r> FitCount<'r> {
         let search = |known_uv: &f64| {
             if *known_uv > 0.0 { refinements } else { THRESHOLDS as usize + 1 + refinements }
         };
-        NOISE_TIMES_S.len()
+        2 * NOISE_TIMES_S.len()
             + 1
             + prior.thresholds_uv.iter().map(search).sum::<usize>()
             + CREEP_TIMES_S.len()
@@ -149,6 +149,8 @@ fn with_memory(
     counted: &FitCount<'_>,
 ) -> PosteriorFit {
     let plain = with_hysteresis(problem, prior, plain, counted);
+    // Friction that nothing explained looked like noise that lasts as long as a press.
+    let plain = with_noise_time(problem, plain, counted);
     with_creep(problem, plain, counted)
 }
 
@@ -161,6 +163,17 @@ fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &FitCount<'
         counted.fitted(problem, settings, None, Effort::FULL)
     };
     if problem.layout.is_play { most_probable(NOISE_TIMES_S.to_vec(), tried) } else { tried(0.0) }
+}
+
+/// The same where noise lasts as long as the evidence says now, if it lasts.
+fn with_noise_time(problem: &Problem<'_>, plain: PosteriorFit, counted: &FitCount<'_>) -> PosteriorFit {
+    if plain.settings.noise_time_s == 0.0 {
+        return plain;
+    }
+    let found = most_probable(NOISE_TIMES_S.to_vec(), |noise_time_s| {
+        counted.fitted(problem, Settings { noise_time_s, ..plain.settings }, Some(&plain), Effort::FULL)
+    });
+    found.unwrap_or(plain)
 }
 
 /// The same where stiffnesses, moduli and thickness are near what they should be, if that is more probable. Presses without labels

@@ -72,7 +72,10 @@ impl World {
                 self.send_if_plugged(&bytes)?;
             }
             Event::Repeat { age, frames } => self.repeat(age, frames)?,
-            Event::ClockJump(time_us) => self.set_clock(time_us),
+            Event::ClockJump(time_us) => {
+                self.doubt_clock();
+                self.set_clock(time_us);
+            }
             Event::ClockBits(bits) => {
                 self.clock_bits = bits;
                 self.set_clock(self.play.time_us);

@@ -217,14 +217,14 @@ fn answered(stream: TcpStream) -> Option<String> {
     let mut body = vec![0; said.lines().find_map(length).unwrap_or(0)];
     reader.read_exact(&mut body).ok()?;
     said.push_str(&String::from_utf8_lossy(&body));
-    let hello = format!(
+    let forged = format!(
         r#"{{"origin":"http://127.66.6.6:{}","token":"x","proof":"{}"}}"#,
         stream.local_addr().ok()?.port(),
         "00".repeat(32)
     );
     let (kind, answer) = match said.starts_with("GET / ") {
         true => ("text/html", LOOT),
-        false => ("application/json", hello.as_str()),
+        false => ("application/json", forged.as_str()),
     };
     let head = format!("HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n", answer.len());
     write!(&stream, "{head}Connection: close\r\n\r\n{answer}").ok()?;
@@ -241,8 +241,8 @@ fn whoever_answers_where_the_page_was_learns_nothing_and_can_do_nothing_later() 
     assert!(comes_true(|| shown.status()["preview"] == true));
     let (token, keys) = (shown.token.clone(), shown.ask("GET /api/keys", "").json());
     let stranger = Stranger::start(&kill(shown));
-    let greetings = || stranger.heard().matches("POST /hello").count();
-    assert!(comes_true(|| greetings() >= 3), "{}", stranger.heard());
+    let handshakes = || stranger.heard().matches("POST /handshake").count();
+    assert!(comes_true(|| handshakes() >= 3), "{}", stranger.heard());
     assert_eq!(browser.run("return location.host"), stranger.address.as_str());
     browser.wait(IS_LOST);
     write(&browser, "2.75");
@@ -260,11 +260,11 @@ fn whoever_answers_where_the_page_was_learns_nothing_and_can_do_nothing_later() 
     stranger.leave();
     let shown = user.start();
     // What it left in the tab asks as the page would.
-    let asked = "const hello = fetch('/hello', { method: 'POST', headers: { 'Content-Type': 'application/json' }, \
-                 body: JSON.stringify({ nonce: '0'.repeat(64) }) }).then((answer) => answer.json()); \
-                 const get = (path, token) => fetch(path, { headers: { Authorization: `Bearer ${token}` } }).then((answer) => answer.status, () => 0); \
-                 return Promise.all([hello, hello.then(({ token }) => get('/api/status', token)), get('/api/keys', sessionStorage['tactpad-token']), \
-                 hello.then(({ origin }) => get(`${origin}/api/status`, '')), hello.then(({ origin }) => get(`${origin}/open`, ''))])";
+    let asked = "const answer = fetch('/handshake', { method: 'POST', headers: { 'Content-Type': 'application/json' }, \
+                 body: JSON.stringify({ nonce: '0'.repeat(64) }) }).then((response) => response.json()); \
+                 const get = (path, token) => fetch(path, { headers: { Authorization: `Bearer ${token}` } }).then((response) => response.status, () => 0); \
+                 return Promise.all([answer, answer.then(({ token }) => get('/api/status', token)), get('/api/keys', sessionStorage['tactpad-token']), \
+                 answer.then(({ origin }) => get(`${origin}/api/status`, '')), answer.then(({ origin }) => get(`${origin}/open`, ''))])";
     let got = browser.run(asked);
     assert_eq!(got[0]["token"], "", "{got}");
     assert_eq!(

@@ -160,7 +160,7 @@ fn the_page_opens_for_this_user_without_a_token_and_for_no_other() {
     assert_eq!(ask(&shown.host, "GET /open", &["Sec-Fetch-Site: cross-site"], b"").status, 401);
     // Only root can be another user, too.
     for _ in 0..20 {
-        for request in ["GET /open", "POST /hello"] {
+        for request in ["GET /open", "POST /handshake"] {
             match asked_by_another_user(&shown.host, request) {
                 Some(line) => assert_eq!(line, "HTTP/1.1 403 Forbidden"),
                 None => assert!(!rustix::process::getuid().is_root(), "setpriv"),

@@ -44,8 +44,8 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 const POLICY_OF_REPORTS: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; \
                                  form-action 'none'; frame-ancestors 'none'; sandbox";
 
-/// Says who is there, and where the page is now.
-pub(super) const HELLO_PATH: &str = "/hello";
+/// Where a page finds out whether this is the program, and where the page is now.
+pub(super) const HANDSHAKE_PATH: &str = "/handshake";
 
 /// The addresses of this server, the token that requests need, and the key by which it proves itself.
 #[derive(Clone, Debug)]
@@ -57,9 +57,9 @@ pub(super) struct Guard {
     key: UserKey,
 }
 
-/// What a page that asks is told.
+/// The answer to a handshake.
 #[derive(Debug, Serialize)]
-pub(super) struct Hello {
+pub(super) struct HandshakeAnswer {
     /// Where the page is now.
     origin: String,
     /// The token, where the page is asked; empty at an earlier address.
@@ -99,13 +99,13 @@ impl Guard {
         &self.key
     }
 
-    /// The answer to a page that asked at `host` with a number of its own.
-    pub(super) fn hello(&self, host: &str, nonce: &str) -> Hello {
+    /// The answer to a page that sent `nonce` to `host`.
+    pub(super) fn handshake(&self, host: &str, nonce: &str) -> HandshakeAnswer {
         let is_present = self.place(host) == Some(Place::Present);
         let token = if is_present { self.token.clone() } else { String::new() };
         let origin = format!("http://{}", self.address);
         let proof = self.key.proof(Proven { host, nonce, origin: &origin, token: &token });
-        Hello { origin, token, proof }
+        HandshakeAnswer { origin, token, proof }
     }
 
     fn place(&self, host: &str) -> Option<Place> {
@@ -136,7 +136,7 @@ impl Guard {
         let is_file = uri.path() == OPEN[0] || uri.path().starts_with(OPEN[1]);
         let is_navigation =
             uri.path() == OPEN_PATH && site.is_none_or(|site| matches!(site, b"same-origin" | b"none"));
-        let is_open = is_file || is_navigation || uri.path() == HELLO_PATH;
+        let is_open = is_file || is_navigation || uri.path() == HANDSHAKE_PATH;
         if !is_open && (place == Place::Earlier || !self.has_token(uri, headers)) {
             let error = "this needs the token of the address: open the page from the tray, or with `tactpad ctl dashboard`";
             return Err(Refusal::new(StatusCode::UNAUTHORIZED, error));
@@ -317,9 +317,9 @@ mod tests {
     fn an_earlier_address_has_the_pages_files_and_the_way_on_and_knows_no_token() {
         let host = ("host", "127.4.5.6:8080");
         let asked = |uri: &str| status(&Method::GET, uri, &[host, ("authorization", "Bearer abc")]);
-        assert_eq!([asked("/"), asked("/page/main.js"), asked("/open"), asked("/hello")], [200; 4]);
+        assert_eq!([asked("/"), asked("/page/main.js"), asked("/open"), asked("/handshake")], [200; 4]);
         assert_eq!([asked("/api/status"), asked("/report/0"), asked("/sheet/marks.svg")], [401; 3]);
-        let told = |host: &str| guard().hello(host, "1");
+        let told = |host: &str| guard().handshake(host, "1");
         let (here, there) = (told("127.1.2.3:8080"), told("127.4.5.6:8080"));
         assert_eq!([here.origin.as_str(), &there.origin], ["http://127.1.2.3:8080"; 2]);
         assert_eq!([here.token.as_str(), &there.token], ["abc", ""]);

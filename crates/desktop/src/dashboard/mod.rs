@@ -8,7 +8,7 @@
 //! ```
 //!
 //! It is served on the loopback interface alone. Each request is looked at by `guard.rs`: its host, its origin, its token; by
-//! `greeting.rs` a page finds the bridge that starts after the one that gave it. The live path does
+//! the handshake in `handshake.rs` a page finds the bridge that starts after the one that gave it. The live path does
 //! nothing for the page but hand over its calls ([`tactpad_bridge::observer`]); the page's own pipeline makes them again on another thread, so the
 //! page sees each event, and each stage is timed, without an instrument in the live path.
 
@@ -19,9 +19,9 @@ mod call_subscribers;
 mod draft;
 mod feed;
 mod frame;
-mod greeting;
 mod guard;
 mod guides;
+mod handshake;
 pub mod host;
 mod listener;
 mod refusal;

@@ -12,12 +12,12 @@ use axum::{Extension, Router, middleware};
 
 use super::app_state::{AppState, BridgeHandles};
 use super::feed::Feed;
-use super::guard::{BODY_BYTES_MAX, Guard, HELLO_PATH, OPEN_PATH, open, watch};
+use super::guard::{BODY_BYTES_MAX, Guard, HANDSHAKE_PATH, OPEN_PATH, open, watch};
 use super::host::DashboardHost;
 use super::listener::{LimitedListener, Peer};
 use super::shadow::{self, ShadowState};
 use super::user_key::{UserKey, random};
-use super::{api, assets, greeting, websocket};
+use super::{api, assets, handshake, websocket};
 use tactpad_bridge::event_loop::Bridge;
 use tactpad_bridge::observer::{Observation, Observer, observe};
 use tactpad_bridge::request::RequestSender;
@@ -100,8 +100,8 @@ fn router(app: Arc<AppState>, guard: Arc<Guard>) -> Router {
     Router::new()
         .route("/", get(assets::index))
         .route(OPEN_PATH, get(open))
-        .route(HELLO_PATH, post(greeting::hello))
-        .route("/api/keys", get(greeting::keys))
+        .route(HANDSHAKE_PATH, post(handshake::answer))
+        .route("/api/keys", get(handshake::keys))
         .route("/page/{name}", get(assets::file))
         .route("/report/{id}", get(api::report))
         .route("/sheet/{name}", get(api::sheet))

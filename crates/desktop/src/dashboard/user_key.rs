@@ -1,7 +1,7 @@
 //! The key of this user on this machine: with it the program proves itself to a page that it gave, and pages keep their drafts.
 //!
-//! Where the page was, another user's program may answer once the bridge has ended. A page that runs asks with a number that was never used
-//! before, and whoever answers without the key is told nothing. The key itself is never sent: what pages get is derived from it.
+//! Where the page was, another user's program may answer once the bridge has ended. A page that runs asks with a nonce, a number
+//! that was never used before, and whoever answers without the key is told nothing. The key itself is never sent: what pages get is derived from it.
 
 use std::fmt::{self, Write};
 use std::fs::File;
@@ -23,7 +23,7 @@ pub struct UserKey([u8; BYTES]);
 pub(super) struct Proven<'a> {
     /// The host that was asked: an answer to one does not do for another.
     pub(super) host: &'a str,
-    /// The page's number.
+    /// The page's nonce.
     pub(super) nonce: &'a str,
     /// Where the page is now.
     pub(super) origin: &'a str,

@@ -26,7 +26,7 @@ export function takeToken() {
 
 const token = () => sessionStorage.getItem(TOKEN) ?? "";
 
-/** Keeps the token of the program that was met again. */
+/** Keeps the token of the program that was found again. */
 export function setToken(token) {
   sessionStorage.setItem(TOKEN, token);
 }

@@ -3,7 +3,7 @@
 // They are encrypted, as whoever answers at this address later can read what is kept for it. Their key comes from the program. When the page
 // moves to another address, they go along in the new address, behind the view's name, where no server sees them.
 
-import { hex } from "./meeting.js";
+import { hex } from "./handshake.js";
 
 const ENTRY = "tactpad-draft-";
 const TAB = "tactpad-tab";

@@ -5,7 +5,7 @@ import { setToken, takeToken } from "./api.js";
 import { say } from "./dom.js";
 import { LiveView } from "./live.js";
 import { KeptDrafts, carried } from "./kept_drafts.js";
-import { learnKeys, meet } from "./meeting.js";
+import { fetchKeys, handshake } from "./handshake.js";
 import { ProfileView } from "./editor.js";
 import { GuidesView } from "./guides.js";
 import { ReportsView } from "./reports.js";
@@ -94,18 +94,18 @@ async function move(views, origin) {
   return new Promise(() => {});
 }
 
-/** Gets the key for drafts: with the token, else by a greeting, which may lead elsewhere. Null is no way in. */
+/** Gets the key for drafts: with the token, else by a handshake, which may lead elsewhere. Null is no way in. */
 async function enter() {
   try {
-    return await learnKeys();
+    return await fetchKeys();
   } catch (error) {
     if (error.status !== 401) throw error;
   }
-  const met = await meet({ isFresh: true });
-  if (met === null) return null;
-  if (met.origin !== location.origin) return move(null, met.origin);
-  setToken(met.token);
-  return learnKeys();
+  const answer = await handshake({ isFresh: true });
+  if (answer === null) return null;
+  if (answer.origin !== location.origin) return move(null, answer.origin);
+  setToken(answer.token);
+  return fetchKeys();
 }
 
 async function start() {

@@ -1,8 +1,8 @@
-// The live socket: one listener list per kind of message, a ping each second, and after a loss a greeting each second until the program is there.
+// The live socket: one listener list per kind of message, a ping each second, and after a loss a handshake each second until the program is there.
 
 import { liveAddress, setConnected, setToken } from "./api.js";
 import { FrameAges, HostClock } from "./clock.js";
-import { meet } from "./meeting.js";
+import { handshake } from "./handshake.js";
 
 const AGAIN_MS = 1000;
 const PING_MS = 1000;
@@ -59,16 +59,16 @@ export class Live {
     setTimeout(() => this.#seek(), AGAIN_MS);
   }
 
-  /** Greets whoever is there, each second, until it is the program. */
+  /** Tries the handshake each second, until it is the program that answers. */
   async #seek() {
-    const met = await meet({ isFresh: false });
-    if (met === null) {
+    const answer = await handshake({ isFresh: false });
+    if (answer === null) {
       this.#tell("lost", null);
       setTimeout(() => this.#seek(), AGAIN_MS);
-    } else if (met.origin !== location.origin) {
-      this.#tell("moved", met.origin);
+    } else if (answer.origin !== location.origin) {
+      this.#tell("moved", answer.origin);
     } else {
-      setToken(met.token);
+      setToken(answer.token);
       setConnected(true);
       this.#open();
     }

@@ -1,4 +1,4 @@
-//! How a page finds the bridge again: it asks who is there, and is told with a proof before it tells anything.
+//! The handshake by which a page finds the bridge again: the page sends a nonce, and whoever answers proves itself before it is told anything.
 
 use std::sync::Arc;
 
@@ -9,16 +9,16 @@ use axum::{Extension, Json};
 use serde::{Deserialize, Serialize};
 
 use super::api::body;
-use super::guard::{Guard, Hello, text};
+use super::guard::{Guard, HandshakeAnswer, text};
 use super::listener::Peer;
 use super::refusal::Refusal;
 
-/// Letters of a page's number.
-const NONCE_LETTERS: usize = 64;
+/// Hexadecimal digits of a nonce.
+const NONCE_DIGITS: usize = 64;
 
-/// A page that asks who is there.
+/// What a page sends.
 #[derive(Deserialize)]
-pub(super) struct Greeting {
+pub(super) struct HandshakeRequest {
     /// A number that it never used before, in hexadecimal digits.
     nonce: String,
 }
@@ -32,23 +32,23 @@ pub(super) struct PageKeys {
     drafts: String,
 }
 
-/// `POST /hello`: says that this is the user's own program, and where the page is now. Only this user's programs are told.
-pub(super) async fn hello(
+/// `POST /handshake`: says that this is the user's own program, and where the page is now. Only this user's programs are told.
+pub(super) async fn answer(
     ConnectInfo(peer): ConnectInfo<Peer>,
     Extension(guard): Extension<Arc<Guard>>,
     headers: HeaderMap,
-    greeting: Result<Json<Greeting>, JsonRejection>,
-) -> Result<Json<Hello>, Refusal> {
+    request: Result<Json<HandshakeRequest>, JsonRejection>,
+) -> Result<Json<HandshakeAnswer>, Refusal> {
     if !peer.is_own {
         let error = "another user's program asks: use the address that `tactpad ctl dashboard` prints";
         return Err(Refusal::new(StatusCode::FORBIDDEN, error));
     }
-    let Greeting { nonce } = body(greeting)?;
-    if nonce.len() != NONCE_LETTERS || !nonce.bytes().all(|letter| letter.is_ascii_hexdigit()) {
-        let error = format!("a nonce has {NONCE_LETTERS} hexadecimal digits");
+    let HandshakeRequest { nonce } = body(request)?;
+    if nonce.len() != NONCE_DIGITS || !nonce.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        let error = format!("a nonce has {NONCE_DIGITS} hexadecimal digits");
         return Err(Refusal::new(StatusCode::BAD_REQUEST, error));
     }
-    Ok(Json(guard.hello(text(&headers, header::HOST).unwrap_or_default(), &nonce)))
+    Ok(Json(guard.handshake(text(&headers, header::HOST).unwrap_or_default(), &nonce)))
 }
 
 /// `GET /api/keys`: what a page needs to know the program again, and to keep drafts where others may look.

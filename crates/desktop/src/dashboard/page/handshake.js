@@ -1,4 +1,4 @@
-// Meets the program again: it proves itself before it is told anything, and says where the page is now.
+// The handshake with the program: it proves itself before it is told anything, and says where the page is now.
 //
 // The keys are nowhere but in this page's memory: what a browser keeps for an address, whoever answers there later can read.
 
@@ -15,8 +15,8 @@ let proofKey = null;
 export const hex = (bytes) => [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 const bytesOf = (text) => Uint8Array.from(text.match(/../g) ?? [], (pair) => parseInt(pair, 16));
 
-/** Asks for the keys, with the token. @returns {Promise<CryptoKey>} the one for drafts */
-export async function learnKeys() {
+/** Fetches the keys, with the token. @returns {Promise<CryptoKey>} the one for drafts */
+export async function fetchKeys() {
   const { proofs, drafts } = await get("/api/keys");
   proofKey = await crypto.subtle.importKey("raw", bytesOf(proofs), { name: "HMAC", hash: "SHA-256" }, false, ["verify"]);
   return crypto.subtle.importKey("raw", bytesOf(drafts), "AES-GCM", false, ["encrypt", "decrypt"]);
@@ -28,18 +28,18 @@ async function isProven({ proof, origin, token }, nonce) {
 }
 
 async function ask(nonce) {
-  const response = await fetch("/hello", {
+  const response = await fetch("/handshake", {
     method: "POST", cache: "no-store", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ nonce }), signal: AbortSignal.timeout(WAIT_MS),
   });
   return response.ok ? response.json() : null;
 }
 
 /**
- * Asks who is there; null is nobody, or not this user's program. A page without keys has just come from whoever is there, so it takes the answer.
+ * Makes the handshake; null is nobody, or not this user's program. A page without keys has just come from whoever is there, so it takes the answer.
  * @param {{ isFresh: boolean }} page whether it has no keys yet
  * @returns {Promise<{ origin: string, token: string } | null>}
  */
-export async function meet({ isFresh }) {
+export async function handshake({ isFresh }) {
   const nonce = hex(crypto.getRandomValues(new Uint8Array(32)));
   try {
     const answer = await ask(nonce);

@@ -96,7 +96,7 @@ impl DashboardHost for Shelf {
     }
 
     fn history(&self, name: &str) -> Value {
-        serde_json::to_value(profile::history(name)).unwrap_or_default()
+        serde_json::to_value(profile::listed(name)).unwrap_or_default()
     }
 
     fn saved(&self, name: &str, id: u64) -> Option<String> {

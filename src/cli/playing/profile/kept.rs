@@ -3,8 +3,9 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
 
-use super::way_back::{self, ListedSave};
-use super::{alter, carried, chosen, own};
+use super::history::verbs::{self, ListedSave};
+use super::history::{bundle, edits};
+use super::{chosen, own};
 use crate::cli::failure::Failure;
 use crate::cli::files::{decoder_file, text_file};
 use tactpad::dashboard::host::{Overwrite, ProfileEntry, SaveError, SavedProfile, StoredProfile};
@@ -60,37 +61,37 @@ pub(crate) fn save(name: &str, text: &str, over: &Overwrite) -> Result<SavedProf
         }
         _ => {}
     }
-    let path = alter::put(name, text);
+    let path = edits::put(name, text);
     let path = path.map_err(|failure| SaveError::Failed(failure.sentence()))?;
     Ok(SavedProfile { version: version(text), path: path.display().to_string() })
 }
 
 /// The saves of a profile, the newest first.
-pub(crate) fn history(name: &str) -> Vec<ListedSave> {
-    way_back::listed(name)
+pub(crate) fn listed(name: &str) -> Vec<ListedSave> {
+    verbs::listed(name)
 }
 
 /// The text of a save.
 pub(crate) fn saved(name: &str, id: u64) -> Option<String> {
-    way_back::saved(name, id)
+    verbs::saved(name, id)
 }
 
 /// Removes a profile of the user's own.
 pub(crate) fn delete(name: &str) -> Result<(), SaveError> {
-    alter::remove(name).map(drop).map_err(refused)
+    edits::remove(name).map(drop).map_err(refused)
 }
 
 /// Gives a profile of the user's own another name.
 pub(crate) fn rename(from: &str, to: &str) -> Result<(), SaveError> {
-    alter::rename(from, to).map(drop).map_err(refused)
+    edits::rename(from, to).map(drop).map_err(refused)
 }
 
 /// The user's own decoders: their names and files.
 pub(crate) fn decoders() -> Vec<(String, PathBuf)> {
-    carried::decoders()
+    bundle::decoders()
 }
 
-/// The file that carries a profile, with the user's own decoder of this name if one is named.
+/// A profile as a file for export, with the user's own decoder of this name if one is named.
 pub(crate) fn exported(name: &str, decoder: Option<&str>) -> Option<String> {
     let text = stored(name)?.text;
     let path = |wanted: &str| decoders().into_iter().find(|(name, _)| name == wanted);
@@ -98,12 +99,12 @@ pub(crate) fn exported(name: &str, decoder: Option<&str>) -> Option<String> {
         Some(wanted) => Some(decoder_file::whole(&path(wanted)?.1).ok()?),
         None => None,
     };
-    carried::document(name, &text, decoder.as_deref()).ok()
+    bundle::document(name, &text, decoder.as_deref()).ok()
 }
 
-/// Makes a carried profile the user's own; the path of its decoder, if one came with it.
+/// Makes the profile of an exported file the user's own; the path of its decoder, if one is in it.
 pub(crate) fn import(document: &str, name: &str) -> Result<Option<String>, SaveError> {
-    let imported = carried::import(document, Some(name)).map_err(refused)?;
+    let imported = bundle::import(document, Some(name)).map_err(refused)?;
     Ok(imported.decoder.map(|path| path.display().to_string()))
 }
 

@@ -1,4 +1,4 @@
-//! `tactpad profile`: list, show, check, begin, edit, take back, carry.
+//! `tactpad profile`: list, show, check, new, edit; history, restore, delete, rename; export, import.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -9,9 +9,6 @@ use crate::cli::failure::Failure;
 use crate::cli::printing::written::stdout;
 use tactpad::pipeline::mapping::read::shipped;
 
-mod alter;
-mod carried;
-mod changes;
 mod chosen;
 mod history;
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
@@ -21,13 +18,14 @@ mod new;
 mod own;
 mod stored;
 mod verdict;
-mod way_back;
+
+use history::verbs;
 
 pub(crate) use chosen::{file, read};
 #[cfg(target_os = "linux")]
 pub(crate) use chosen::{is_known, known, next, read_aside};
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
-pub(super) use kept::{decoders, delete, entries, exported, history, import, rename, save, saved, stored};
+pub(super) use kept::{decoders, delete, entries, exported, import, listed, rename, save, saved, stored};
 pub(super) use stored::ProfileDestination;
 
 /// Arguments of `tactpad profile`.
@@ -151,13 +149,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Check { profile, json } => verdict::run(profile, *json),
         Action::New { name, save } => new::new(name, *save),
         Action::Edit { name } => new::edit(name),
-        Action::History { name, json } => way_back::print(name, *json),
-        Action::Restore { name, shipped: true, .. } => way_back::restore_shipped(name),
-        Action::Restore { name, number, .. } => way_back::restore(name, *number),
-        Action::Delete { name } => way_back::delete(name),
-        Action::Rename { name, to } => way_back::rename(name, to),
-        Action::Export { name, decoder, out } => way_back::export(name, decoder.as_deref(), out),
-        Action::Import { file, name } => way_back::import(file, name.as_deref()),
+        Action::History { name, json } => verbs::print(name, *json),
+        Action::Restore { name, shipped: true, .. } => verbs::restore_shipped(name),
+        Action::Restore { name, number, .. } => verbs::restore(name, *number),
+        Action::Delete { name } => verbs::delete(name),
+        Action::Rename { name, to } => verbs::rename(name, to),
+        Action::Export { name, decoder, out } => verbs::export(name, decoder.as_deref(), out),
+        Action::Import { file, name } => verbs::import(file, name.as_deref()),
         Action::Schema => Ok(stdout().write_all(shipped::schema().as_bytes())?),
     }
 }

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{alter, chosen, own};
+use super::history::edits;
+use super::{chosen, own};
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
 use crate::cli::printing::written::is_stdout;
@@ -48,9 +49,9 @@ impl ProfileDestination {
     /// Writes the profile and says where it is.
     pub(crate) fn write(&self, text: &str) -> Result<PathBuf, Failure> {
         match self {
-            Self::Own(name) => alter::create(name, text),
+            Self::Own(name) => edits::create(name, text),
             Self::File(_, path) if own::name_in_folder(path).is_some() => {
-                alter::write_over(path, text).map(|()| path.clone())
+                edits::write_over(path, text).map(|()| path.clone())
             }
             Self::File(to, path) => to.write(text.as_bytes()).map(|()| path.clone()),
         }

@@ -1,23 +1,24 @@
-//! A profile as one file that is carried to another machine: its name, its text, and a decoder if one is wanted.
+//! The exported file of a profile, for import on another machine: its name, its text, and a decoder if one is wanted.
 
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{alter, own};
+use super::edits;
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
 use crate::cli::files::{config_folder, decoder_file};
+use crate::cli::playing::profile::own;
 use tactpad::pipeline::mapping::read::ReadProfile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 
-/// The version of the form.
-const FORM: u32 = 1;
+/// The version of the format.
+const FORMAT: u32 = 1;
 
 /// The file's content: JSON.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct CarriedProfile {
-    /// The version of the form.
+struct ProfileBundle {
+    /// The version of the format.
     tactpad_profile: u32,
     name: String,
     /// The profile, byte for byte.
@@ -27,41 +28,41 @@ pub(super) struct CarriedProfile {
     decoder: Option<String>,
 }
 
-/// What came of a carried profile.
+/// What an import has made.
 #[derive(Debug)]
-pub(super) struct ImportedProfile {
-    pub(super) name: String,
-    pub(super) path: PathBuf,
-    /// Where its decoder is, if one was carried.
-    pub(super) decoder: Option<PathBuf>,
+pub(crate) struct ImportedProfile {
+    pub(crate) name: String,
+    pub(crate) path: PathBuf,
+    /// Where its decoder is, if one was in it.
+    pub(crate) decoder: Option<PathBuf>,
 }
 
-/// The file of a profile of this name.
-pub(super) fn document(name: &str, text: &str, decoder: Option<&[u8]>) -> Result<String, Failure> {
+/// The bundle of a profile of this name, as text.
+pub(crate) fn document(name: &str, text: &str, decoder: Option<&[u8]>) -> Result<String, Failure> {
     let decoder = decoder.map(|bytes| bytes.iter().map(|byte| format!("{byte:02x}")).collect());
-    let carried = CarriedProfile { tactpad_profile: FORM, name: name.into(), text: text.into(), decoder };
-    let json = serde_json::to_string_pretty(&carried).map_err(|error| Failure::Failed(error.to_string()))?;
+    let bundle = ProfileBundle { tactpad_profile: FORMAT, name: name.into(), text: text.into(), decoder };
+    let json = serde_json::to_string_pretty(&bundle).map_err(|error| Failure::Failed(error.to_string()))?;
     Ok(json + "\n")
 }
 
-/// Makes the carried profile one's own, under its name or another one; what is there stays.
-pub(super) fn import(document: &str, name: Option<&str>) -> Result<ImportedProfile, Failure> {
-    let carried: CarriedProfile = serde_json::from_str(document).map_err(|error| {
+/// Makes the profile of a bundle one's own, under its name or another one; what is there stays.
+pub(crate) fn import(document: &str, name: Option<&str>) -> Result<ImportedProfile, Failure> {
+    let bundle: ProfileBundle = serde_json::from_str(document).map_err(|error| {
         Failure::Unusable(format!("this is no profile that `tactpad profile export` wrote: {error}"))
     })?;
-    if carried.tactpad_profile != FORM {
+    if bundle.tactpad_profile != FORMAT {
         return Err(Failure::Unusable(format!(
-            "this profile was written in form {}, and this program reads form {FORM}: take a newer program",
-            carried.tactpad_profile
+            "this profile was written in format {}, and this program reads format {FORMAT}: take a newer program",
+            bundle.tactpad_profile
         )));
     }
-    let name = name.unwrap_or(&carried.name);
+    let name = name.unwrap_or(&bundle.name);
     own::check_name(name)?;
-    if let (None, found) = ReadProfile::read(&carried.text, OutputChoice::AsWritten) {
+    if let (None, found) = ReadProfile::read(&bundle.text, OutputChoice::AsWritten) {
         let found: Vec<String> = found.iter().map(|it| it.render("the profile in it")).collect();
         return Err(Failure::Unusable(format!("the profile in it cannot be used\n{}", found.join("\n"))));
     }
-    let decoder = carried.decoder.as_deref().map(bytes_of).transpose()?;
+    let decoder = bundle.decoder.as_deref().map(bytes_of).transpose()?;
     let place = decoder.as_ref().map(|_| decoder_place(name)).transpose()?;
     // The profile last: with it all is there.
     if own::file(name).is_some() {
@@ -72,7 +73,7 @@ pub(super) fn import(document: &str, name: Option<&str>) -> Result<ImportedProfi
     if let (Some(bytes), Some(place)) = (&decoder, &place) {
         Destination::of(place)?.write(bytes)?;
     }
-    let path = alter::create(name, &carried.text)?;
+    let path = edits::create(name, &bundle.text)?;
     Ok(ImportedProfile { name: name.into(), path, decoder: place })
 }
 
@@ -90,7 +91,7 @@ fn bytes_of(digits: &str) -> Result<Vec<u8>, Failure> {
 
 /// The user's own decoders, in the order of their names.
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
-pub(super) fn decoders() -> Vec<(String, PathBuf)> {
+pub(crate) fn decoders() -> Vec<(String, PathBuf)> {
     let folder = config_folder::folder("decoders");
     let entries = folder.and_then(|folder| std::fs::read_dir(folder).ok()).into_iter().flatten().flatten();
     let named = entries.filter_map(|entry| {

@@ -1,16 +1,16 @@
 //! The last saves of each of the user's own profiles, so that every save can be taken back.
 //!
-//! Each is a file of its own beside the others, put in its place whole. What stands in a profile is kept before it is written over, whoever wrote
+//! Each is a file of its own beside the others, put in its place whole. What stands in a profile is recorded before it is written over, whoever wrote
 //! it: so a kill between two steps loses nothing.
 
 use std::fs;
 use std::path::PathBuf;
 use std::time::UNIX_EPOCH;
 
-use super::own;
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
 use crate::cli::files::{config_folder, text_file};
+use crate::cli::playing::profile::own;
 use crate::cli::printing::written::reason;
 
 /// So many saves of a profile are kept.
@@ -32,30 +32,30 @@ pub(super) struct Save {
     pub(super) text: String,
 }
 
-/// The saves of a profile, the newest first. One that was changed by an editor since is kept by that.
+/// The saves of a profile, the newest first. What an editor wrote since is recorded first.
 pub(super) fn of(name: &str) -> Vec<Save> {
     // Who can only read sees what there is.
-    let _ = keep_present(name);
+    let _ = record_present(name);
     saves(name)
 }
 
-/// Keeps what stands in the profile now, if it is not the newest that is kept.
-pub(super) fn keep_present(name: &str) -> Result<(), Failure> {
+/// Records what stands in the profile now, if it is not the newest that is kept.
+pub(crate) fn record_present(name: &str) -> Result<(), Failure> {
     let present = own::file(name).and_then(|path| text_file::read(&path).ok());
-    present.map_or(Ok(()), |text| keep(name, &text))
+    present.map_or(Ok(()), |text| record(name, &text))
 }
 
-/// Keeps a text as the newest save, unless it is that already.
-pub(super) fn keep(name: &str, text: &str) -> Result<(), Failure> {
+/// Records a text as the newest save, unless it is that already.
+pub(super) fn record(name: &str, text: &str) -> Result<(), Failure> {
     let Some(folder) = folder(name) else { return Ok(()) };
     let saves = saves(name);
     if saves.first().is_some_and(|newest| newest.text == text) {
         return Ok(());
     }
-    let unkept = |error: &std::io::Error| {
+    let unmade = |error: &std::io::Error| {
         Failure::Failed(format!("{} cannot be made: {}", folder.display(), reason(error)))
     };
-    fs::create_dir_all(&folder).map_err(|error| unkept(&error))?;
+    fs::create_dir_all(&folder).map_err(|error| unmade(&error))?;
     // A clock that was set back does not change the order.
     let id = saves.first().map_or(1, |newest| newest.id + 1);
     Destination::of(&folder.join(file_name(id)))?.write(text.as_bytes())?;

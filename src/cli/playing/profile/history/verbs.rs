@@ -7,16 +7,17 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::changes::changes;
-use super::history::{self, Save};
-use super::{alter, carried, chosen, own};
+use super::saves::{self, Save};
+use super::{bundle, edits};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::destination::Destination;
+use crate::cli::playing::profile::{chosen, own};
 use crate::cli::printing::written::{is_stdout, print_json, reason, say, stdout};
 use tactpad::pipeline::mapping::read::shipped;
 
-/// No carried profile is longer.
-const CARRIED_BYTES_MAX: u64 = 64_000_000;
+/// No bundle is longer.
+const BUNDLE_BYTES_MAX: u64 = 64_000_000;
 
 /// A save as it is listed.
 #[derive(Debug, Serialize)]
@@ -33,8 +34,8 @@ pub(crate) struct ListedSave {
 
 /// The saves of a profile, the newest first.
 pub(crate) fn listed(name: &str) -> Vec<ListedSave> {
-    let saves = history::of(name);
-    let shipped = shipped::text(name).filter(|_| saves.len() < history::SAVES_MAX);
+    let saves = saves::of(name);
+    let shipped = shipped::text(name).filter(|_| saves.len() < saves::SAVES_MAX);
     let entry = |(index, save): (usize, &Save)| {
         let before = saves.get(index + 1).map(|before| before.text.as_str()).or(shipped);
         let changes = before.map_or_else(Vec::new, |before| changes(before, &save.text));
@@ -46,11 +47,11 @@ pub(crate) fn listed(name: &str) -> Vec<ListedSave> {
 /// The text of a save.
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
 pub(crate) fn saved(name: &str, id: u64) -> Option<String> {
-    history::of(name).into_iter().find(|save| save.id == id).map(|save| save.text)
+    saves::of(name).into_iter().find(|save| save.id == id).map(|save| save.text)
 }
 
 /// Prints the history.
-pub(super) fn print(name: &str, json: bool) -> Result<(), Failure> {
+pub(crate) fn print(name: &str, json: bool) -> Result<(), Failure> {
     let saves = listed(name);
     if json {
         return print_json(&saves);
@@ -75,8 +76,8 @@ fn no_history(name: &str) -> Failure {
 }
 
 /// Puts an earlier save in the place of the present one; without a number the last one that differs from it.
-pub(super) fn restore(name: &str, number: Option<usize>) -> Result<(), Failure> {
-    let saves = history::of(name);
+pub(crate) fn restore(name: &str, number: Option<usize>) -> Result<(), Failure> {
+    let saves = saves::of(name);
     let is_there = own::file(name).is_some();
     let number = number.unwrap_or(if is_there { 2 } else { 1 });
     let Some(save) = number.checked_sub(1).and_then(|index| saves.get(index)) else {
@@ -88,13 +89,13 @@ pub(super) fn restore(name: &str, number: Option<usize>) -> Result<(), Failure> 
             saves.len()
         )));
     };
-    let path = alter::put(name, &save.text)?;
+    let path = edits::put(name, &save.text)?;
     say(format_args!("{name} is as it was saved {}; what stood there is in its history", date(save.at_ms)));
     Ok(writeln!(stdout(), "{}", path.display())?)
 }
 
 /// Makes a profile that stands before a shipped one as it was shipped.
-pub(super) fn restore_shipped(name: &str) -> Result<(), Failure> {
+pub(crate) fn restore_shipped(name: &str) -> Result<(), Failure> {
     if shipped::text(name).is_none() {
         return Err(Failure::Unusable(format!("there is no {name:?} inside the program")));
     }
@@ -102,34 +103,34 @@ pub(super) fn restore_shipped(name: &str) -> Result<(), Failure> {
 }
 
 /// Removes a profile of the user's own; its history stays.
-pub(super) fn delete(name: &str) -> Result<(), Failure> {
-    alter::remove(name)?;
+pub(crate) fn delete(name: &str) -> Result<(), Failure> {
+    edits::remove(name)?;
     let rest = if shipped::text(name).is_some() { ", and the shipped one plays" } else { "" };
     say(format_args!("{name} is removed{rest}: `tactpad profile restore {name:?}` brings it back"));
     Ok(())
 }
 
 /// Gives a profile of the user's own another name.
-pub(super) fn rename(name: &str, to: &str) -> Result<(), Failure> {
-    let path = alter::rename(name, to)?;
+pub(crate) fn rename(name: &str, to: &str) -> Result<(), Failure> {
+    let path = edits::rename(name, to)?;
     Ok(writeln!(stdout(), "{}", path.display())?)
 }
 
-/// Writes the file that carries a profile.
-pub(super) fn export(name: &str, decoder: Option<&Path>, out: &Path) -> Result<(), Failure> {
+/// Writes a profile as a bundle.
+pub(crate) fn export(name: &str, decoder: Option<&Path>, out: &Path) -> Result<(), Failure> {
     if !own::is_name(name) {
         return Err(Failure::Unusable(format!(
-            "{name:?} is a file: carry the file itself, or name a profile"
+            "{name:?} is a file: copy the file itself, or name a profile"
         )));
     }
     let to = Destination::of(out)?;
     let text = chosen::find(name)?.text;
     let decoder = decoder.map(decoder_file::whole).transpose()?;
-    to.write(carried::document(name, &text, decoder.as_deref())?.as_bytes())
+    to.write(bundle::document(name, &text, decoder.as_deref())?.as_bytes())
 }
 
-/// Makes a carried profile one's own.
-pub(super) fn import(file: &Path, name: Option<&str>) -> Result<(), Failure> {
+/// Makes the profile of a bundle one's own.
+pub(crate) fn import(file: &Path, name: Option<&str>) -> Result<(), Failure> {
     let unread = |error: &io::Error| {
         Failure::Unusable(format!("{} cannot be read: {}; name another file", file.display(), reason(error)))
     };
@@ -138,8 +139,8 @@ pub(super) fn import(file: &Path, name: Option<&str>) -> Result<(), Failure> {
         true => Box::new(io::stdin()),
         false => Box::new(fs::File::open(file).map_err(|error| unread(&error))?),
     };
-    source.take(CARRIED_BYTES_MAX).read_to_string(&mut text).map_err(|error| unread(&error))?;
-    let imported = carried::import(&text, name).map_err(|failure| match failure {
+    source.take(BUNDLE_BYTES_MAX).read_to_string(&mut text).map_err(|error| unread(&error))?;
+    let imported = bundle::import(&text, name).map_err(|failure| match failure {
         Failure::Unusable(why) => Failure::Unusable(format!("{}: {why}", file.display())),
         failed => failed,
     })?;

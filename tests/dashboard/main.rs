@@ -17,6 +17,7 @@ mod live;
 mod numbers;
 mod openings;
 mod pictures;
+mod profile_history;
 mod reports;
 #[path = "../bridge/running.rs"]
 #[expect(dead_code, reason = "other tests use the rest of it")]
@@ -25,4 +26,3 @@ mod security;
 mod shown;
 #[path = "../support/mod.rs"]
 mod support;
-mod way_back;

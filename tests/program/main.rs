@@ -22,7 +22,7 @@ mod networks;
 mod paper;
 mod plot;
 #[cfg(target_os = "linux")]
-mod profile_saves;
+mod profile_history;
 #[cfg(target_os = "linux")]
 mod profiles;
 mod protocol;

@@ -223,12 +223,12 @@ pub(super) async fn decoders(State(app): Shared) -> ApiResult {
     Ok(Json(json!({"decoders": decoders})).into_response())
 }
 
-/// `GET /api/profile/NAME/export`: the file that carries a profile.
+/// `GET /api/profile/NAME/export`: a profile as a file.
 pub(super) async fn export(State(app): Shared, Path(name): Path<String>) -> ApiResult {
     exported(wait(move || app.host.exported(&name, None)).await?)
 }
 
-/// `GET /api/profile/NAME/export/DECODER`: the file that carries a profile and a decoder.
+/// `GET /api/profile/NAME/export/DECODER`: a profile and a decoder as a file.
 pub(super) async fn export_with_decoder(
     State(app): Shared,
     Path((name, decoder)): Path<(String, String)>,
@@ -249,7 +249,7 @@ pub(super) struct ImportRequest {
     name: String,
 }
 
-/// `POST /api/import`: makes a carried profile the user's own.
+/// `POST /api/import`: makes the profile of an exported file the user's own.
 pub(super) async fn import(
     State(app): Shared,
     request: Result<Json<ImportRequest>, JsonRejection>,

@@ -31,6 +31,7 @@ const FILES: &[(&str, &str)] = &files![
     "doctor.js",
     "dom.js",
     "draft.js",
+    "draft_store.js",
     "editor.css",
     "editor.js",
     "events.js",
@@ -44,7 +45,6 @@ const FILES: &[(&str, &str)] = &files![
     "history.js",
     "index.html",
     "instruments.css",
-    "kept_drafts.js",
     "keys.js",
     "latency.js",
     "live.js",
@@ -54,6 +54,7 @@ const FILES: &[(&str, &str)] = &files![
     "plate.js",
     "plate_handles.js",
     "preview.js",
+    "profile_history.js",
     "reports.js",
     "rewind.js",
     "router.js",
@@ -68,7 +69,6 @@ const FILES: &[(&str, &str)] = &files![
     "text.js",
     "trace.js",
     "values.js",
-    "way_back.js",
 ];
 
 /// Answers `GET /`.

@@ -65,11 +65,10 @@ pub trait DashboardHost: Send + Sync {
     /// The names of the user's own decoders.
     fn decoders(&self) -> Vec<String>;
 
-    /// The file that carries a profile to another machine, with the user's own decoder of this name if one is named; `None` if there is no
-    /// such profile or decoder.
+    /// A profile as a file for export, with the user's own decoder of this name if one is named; `None` if there is no such profile or decoder.
     fn exported(&self, name: &str, decoder: Option<&str>) -> Option<String>;
 
-    /// Makes a carried profile the user's own under a name that is new; the path of its decoder, if one came with it.
+    /// Makes the profile of an exported file the user's own under a name that is new; the path of its decoder, if one is in it.
     ///
     /// # Errors
     /// There is no new profile.

@@ -9,12 +9,12 @@ import { Form } from "./form.js";
 import { Finger, Plate } from "./plate.js";
 import { PlateHandles } from "./plate_handles.js";
 import { Preview } from "./preview.js";
+import { ProfileHistory } from "./profile_history.js";
 import { Rewind } from "./rewind.js";
 import { askConflict, askDrop, askName, readProfile, writeProfile } from "./saving.js";
 import { Schema } from "./schema.js";
 import { TextPane, plural } from "./text.js";
 import { Values } from "./values.js";
-import { WayBack } from "./way_back.js";
 
 export class ProfileView {
   #name = null;
@@ -25,9 +25,9 @@ export class ProfileView {
   #opening = null;
   #reading = false;
   #previewed = false;
-  /** @type {import("./kept_drafts.js").KeptDrafts | null} */
-  #drafts = null;
-  /** A draft that this browser has kept, to be opened first. @type {import("./kept_drafts.js").KeptDraft | null} */
+  /** @type {import("./draft_store.js").DraftStore | null} */
+  #draftStore = null;
+  /** A draft that this browser has stored, to be opened first. @type {import("./draft_store.js").StoredDraft | null} */
   #found = null;
   #leaving = false;
   /** What is to be read once the draft was checked. */
@@ -43,7 +43,7 @@ export class ProfileView {
     section.addEventListener("keydown", (event) => this.#shortcut(event));
     addEventListener("beforeunload", (event) => this.draft.dirty && !this.#leaving && event.preventDefault());
     this.draft.addEventListener("text", () => this.text?.showText());
-    for (const change of ["text", "typed", "checked"]) this.draft.addEventListener(change, () => this.#keep());
+    for (const change of ["text", "typed", "checked"]) this.draft.addEventListener(change, () => this.#storeDraft());
     this.draft.addEventListener("checked", () => this.#checked());
     this.draft.addEventListener("failed", ({ detail }) => this.#tell(detail));
   }
@@ -73,7 +73,7 @@ export class ProfileView {
     this.form = new Form(this.values, schema);
     this.text = new TextPane(this.draft);
     this.rewind = new Rewind(this.draft);
-    this.wayBack = new WayBack({
+    this.profileHistory = new ProfileHistory({
       draft: (text, sentence) => this.#showDraft(text, sentence),
       open: (name) => this.#reopen(name),
       mayDrop: async () => !this.draft.dirty || await askDrop(this.#name) === true,
@@ -82,7 +82,7 @@ export class ProfileView {
     this.body.replaceChildren(el("div", { class: "editor-grid" },
       el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node, hint)),
       el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Keys" }), this.form.node)),
-      el("div", { class: "area-text" }, el("div", { class: "card" }, el("h3", { text: "Text" }), this.text.node), this.rewind.node, this.wayBack.node)));
+      el("div", { class: "area-text" }, el("div", { class: "card" }, el("h3", { text: "Text" }), this.text.node), this.rewind.node, this.profileHistory.node)));
   }
 
   /** The view comes into sight. */
@@ -108,10 +108,10 @@ export class ProfileView {
     return playing;
   }
 
-  /** Shows the saves of the profile that is open. */
-  async #showSaves() {
+  /** Shows the history of the profile that is open. */
+  async #showHistory() {
     const profile = this.profiles.find(({ name }) => name === this.#name);
-    if (profile !== undefined) await this.wayBack.show(profile).catch((error) => this.#tell(error.message));
+    if (profile !== undefined) await this.profileHistory.show(profile).catch((error) => this.#tell(error.message));
   }
 
   #showDraft(text, sentence) {
@@ -139,7 +139,7 @@ export class ProfileView {
     this.#reading = true;
     const profile = await readProfile(name).finally(() => { this.#reading = false; });
     this.#opened(name, profile.version, profile.text, text);
-    await this.#showSaves();
+    await this.#showHistory();
   }
 
   #opened(name, version, saved, text) {
@@ -164,24 +164,24 @@ export class ProfileView {
     await this.#load(profile, text);
   }
 
-  /** Takes the keeper of unsaved drafts, and the draft that it found. */
-  keepDrafts(drafts, found) {
-    this.#drafts = drafts;
+  /** Takes the store of drafts that are not saved, and the draft that it found. */
+  setDraftStore(store, found) {
+    this.#draftStore = store;
     this.#found = found;
-    showKept(found);
+    showStored(found);
   }
 
-  #keep() {
+  #storeDraft() {
     if (this.#name === null || this.#reading) return;
     const { dirty, text } = this.draft;
-    this.#drafts?.keep(dirty ? { profile: this.#name, version: this.#version, text, at_ms: Date.now() } : null);
+    this.#draftStore?.store(dirty ? { profile: this.#name, version: this.#version, text, at_ms: Date.now() } : null);
   }
 
-  /** Opens what was kept as it was left. It is not played: it may be why the bridge was ended. */
+  /** Opens the stored draft as it was left. It is not played: it may be why the bridge was ended. */
   async #openFound() {
     const { profile, version, text, at_ms } = this.#found;
     this.#found = null;
-    showKept(null);
+    showStored(null);
     this.live.checked = false;
     this.#allowPreview(false);
     const saved = await readProfile(profile).catch(() => null);
@@ -189,7 +189,7 @@ export class ProfileView {
     const changed = saved?.version === version ? "" : " The file was changed meanwhile: Save asks before it writes.";
     this.#told = `Your draft of ${profile} is here as you left it at ${new Date(at_ms).toLocaleTimeString()}. It is not played before you tick “Play the draft live”; Revert drops it.${changed}`;
     announce(this.#told);
-    await this.#showSaves();
+    await this.#showHistory();
   }
 
   /** The bridge is there again. */
@@ -207,10 +207,10 @@ export class ProfileView {
     document.getElementById("preview-notice").replaceChildren();
   }
 
-  /** The page goes elsewhere by itself: everything is kept, and nobody is asked. */
+  /** The page goes elsewhere by itself: everything is stored, and nobody is asked. */
   leave() {
     this.#leaving = true;
-    return this.#drafts?.settled();
+    return this.#draftStore?.flush();
   }
 
   #tell(sentence) {
@@ -274,7 +274,7 @@ export class ProfileView {
       this.draft.markSaved(text);
       this.#tell(`Saved to ${answer.path}.`);
       await this.#list();
-      await this.#showSaves();
+      await this.#showHistory();
     } catch (error) {
       await this.#notSaved(error, name, version);
     }
@@ -315,7 +315,7 @@ export class ProfileView {
 }
 
 /** Says in every view that a draft is kept. */
-function showKept(found) {
+function showStored(found) {
   const notice = document.getElementById("draft-notice");
   if (found !== null) announce(`A draft of ${found.profile} that was not saved is kept.`);
   notice.replaceChildren(...(found === null ? [] : [el("span", { text: `● A draft of ${found.profile} that was not saved is kept.` }), " ",

@@ -1,4 +1,4 @@
-// One key of a profile as a field: label, control, explanation, and a way back to what holds without it.
+// One key of a profile as a field: label, control, explanation, and a reset to what holds without it.
 
 import { captureButton } from "./capture.js";
 import { el, say, set } from "./dom.js";

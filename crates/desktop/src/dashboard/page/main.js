@@ -3,8 +3,8 @@
 import { announce } from "./announce.js";
 import { setToken, takeToken } from "./api.js";
 import { say } from "./dom.js";
+import { DraftStore, takeAsFragment } from "./draft_store.js";
 import { LiveView } from "./live.js";
-import { KeptDrafts, carried } from "./kept_drafts.js";
 import { fetchKeys, handshake } from "./handshake.js";
 import { ProfileView } from "./editor.js";
 import { GuidesView } from "./guides.js";
@@ -87,10 +87,10 @@ function clear(views, sentence) {
   views.profile.clear();
 }
 
-/** Goes to where the page is now, with the drafts that are kept here. */
+/** Goes to where the page is now, with the drafts that are stored here. */
 async function move(views, origin) {
   await views?.profile.leave();
-  location.replace(`${origin}/#${shown()}${await carried()}`);
+  location.replace(`${origin}/#${shown()}${await takeAsFragment()}`);
   return new Promise(() => {});
 }
 
@@ -119,8 +119,8 @@ async function start() {
     if (connection.textContent === "") say(connection, NO_WAY_IN);
     return startRouter();
   }
-  const { drafts, found } = await KeptDrafts.open(key).catch(() => ({ drafts: null, found: null }));
-  views.profile.keepDrafts(drafts, found);
+  const { store, found } = await DraftStore.open(key).catch(() => ({ store: null, found: null }));
+  views.profile.setDraftStore(store, found);
   startRouter();
   followFrames(views);
   followStatus(views);

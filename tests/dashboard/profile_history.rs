@@ -1,4 +1,4 @@
-//! Every save can be taken back; profiles get other names, go and come again, and are carried to another machine.
+//! The history of profiles on the page; profiles are renamed, deleted and brought back, exported and imported.
 
 use std::fs;
 
@@ -123,20 +123,20 @@ fn a_profile_is_exported_and_imported_under_another_name() {
     save(&shown, &browser, "contra", "2.5");
     browser.wait("document.querySelector('#export-decoder option[value=\"PAD-1\"]')");
     browser.run("const choice = document.getElementById('export-decoder'); choice.value = 'PAD-1'; choice.dispatchEvent(new Event('change'))");
-    let carried = "return fetch(document.getElementById('export').href).then((answer) => answer.text())";
-    let carried = browser.run(carried).as_str().unwrap().to_owned();
+    let exported = "return fetch(document.getElementById('export').href).then((answer) => answer.text())";
+    let exported = browser.run(exported).as_str().unwrap().to_owned();
     browser.run(&format!(
         "const file = new File([{}], 'contra.tactpad'); const all = new DataTransfer(); all.items.add(file); \
          const field = document.getElementById('import'); field.files = all.files; field.dispatchEvent(new Event('change'))",
-        serde_json::to_string(&carried).unwrap()
+        serde_json::to_string(&exported).unwrap()
     ));
     browser.wait("document.getElementById('new-name')?.value === 'contra'");
-    name(&browser, "carried");
-    assert!(comes_true(|| text(&shown, "carried") == text(&shown, "contra")));
-    assert_eq!(fs::read(decoders.join("carried.decoder")).unwrap(), bytes.as_ref());
-    let again = serde_json::json!({"document": carried, "name": "carried"}).to_string();
+    name(&browser, "imported");
+    assert!(comes_true(|| text(&shown, "imported") == text(&shown, "contra")));
+    assert_eq!(fs::read(decoders.join("imported.decoder")).unwrap(), bytes.as_ref());
+    let again = serde_json::json!({"document": exported, "name": "imported"}).to_string();
     let broken = serde_json::json!({"document": "{}", "name": "new"}).to_string();
-    let out = serde_json::json!({"document": carried, "name": "../out"}).to_string();
+    let out = serde_json::json!({"document": exported, "name": "../out"}).to_string();
     for asked in [again, broken, out] {
         let refused = shown.ask("POST /api/import", &asked);
         assert_eq!(refused.status, 400, "{refused:?}");

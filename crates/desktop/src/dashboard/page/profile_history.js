@@ -1,4 +1,4 @@
-// The way back: earlier saves of a profile, another name for it, its end, and the file that carries it to another machine.
+// The history of a profile; and what is done with it as a whole: duplicate, rename, delete, export, import.
 
 import { announce } from "./announce.js";
 import { get, post, request, withToken } from "./api.js";
@@ -7,7 +7,7 @@ import { askName, readProfile, writeProfile } from "./saving.js";
 
 const place = (name, rest = "") => `/api/profile/${encodeURIComponent(name)}${rest}`;
 
-export class WayBack {
+export class ProfileHistory {
   /** @type {{ name: string, own: boolean, shipped: boolean } | null} */
   #profile = null;
 
@@ -28,13 +28,13 @@ export class WayBack {
     this.decoderLabel = el("label", { class: "chooser", hidden: true }, "Decoder that goes along ", this.decoder);
     this.export = el("a", { class: "action", id: "export", download: "", text: "Export to a file" });
     this.file = el("input", { type: "file", id: "import", hidden: true, accept: ".tactpad,application/json", onchange: () => this.#import() });
-    this.node = el("div", { class: "card" }, el("h3", { text: "Saves and files" }),
+    this.node = el("div", { class: "card" }, el("h3", { text: "History and files" }),
       el("div", { class: "commands" }, button("Duplicate …", () => this.#duplicate(), { id: "duplicate", class: "main" }), this.rename, this.remove, this.decoderLabel, this.export,
         button("Import from a file …", () => this.file.click(), { id: "choose-import", class: "main" }), this.file),
-      this.message, this.undo, el("h4", { text: "Earlier saves" }), this.history);
+      this.message, this.undo, el("h4", { text: "History" }), this.history);
   }
 
-  /** Shows what there is of the profile that is open. */
+  /** Shows the history of the profile that is open. */
   async show(profile) {
     if (profile.name !== this.#profile?.name) this.#tell("");
     this.#profile = profile;
@@ -147,7 +147,7 @@ function changesOf({ number, changes }, own) {
   return number === 1 && own ? `as it is now: ${words}` : words;
 }
 
-/** The name in a file that carries a profile. */
+/** The name in an exported file. */
 function nameIn(document) {
   try {
     return String(JSON.parse(document).name ?? "");

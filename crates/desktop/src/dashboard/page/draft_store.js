@@ -1,18 +1,18 @@
-// Drafts that are not saved, as this browser keeps them: one of each tab, by profile and version.
+// The store of drafts that are not saved, in this browser: one of each tab, by profile and version.
 //
-// They are encrypted, as whoever answers at this address later can read what is kept for it. Their key comes from the program. When the page
-// moves to another address, they go along in the new address, behind the view's name, where no server sees them.
+// They are encrypted, as whoever answers at this address later can read what is stored for it. Their key comes from the program. When the page
+// moves to another address, they go along in its fragment, behind the view's name, which no server sees.
 
 import { hex } from "./handshake.js";
 
 const ENTRY = "tactpad-draft-";
 const TAB = "tactpad-tab";
-const CARRIED = "&drafts=";
+const FRAGMENT = "&drafts=";
 const NAME = /^[0-9a-f]{32}$/;
 const NONCE_BYTES = 12;
-const MOST_CARRIED = 8;
+const FRAGMENT_DRAFTS_MAX = 8;
 
-/** @typedef {{ profile: string, version: string | null, text: string, at_ms: number }} KeptDraft */
+/** @typedef {{ profile: string, version: string | null, text: string, at_ms: number }} StoredDraft */
 
 const toText = (bytes) => btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 const toBytes = (text) => Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
@@ -28,31 +28,31 @@ function claim(name) {
   });
 }
 
-export class KeptDrafts {
+export class DraftStore {
   #key;
   /** The name of this tab's entry. */
   #name = "";
-  /** The draft that is to be kept next, null if none is; undefined if nothing waits. @type {KeptDraft | null | undefined} */
+  /** The draft that is to be stored next, null if none is; undefined if nothing waits. @type {StoredDraft | null | undefined} */
   #next = undefined;
   #writing = Promise.resolve();
 
   /**
-   * Takes what was carried here, and becomes the keeper of one entry: this tab's, else the newest that no open tab has.
+   * Takes drafts out of the fragment, and becomes the owner of one entry: this tab's, else the newest that no open tab has.
    * @param {CryptoKey} key
-   * @returns {Promise<{ drafts: KeptDrafts, found: KeptDraft | null }>}
+   * @returns {Promise<{ store: DraftStore, found: StoredDraft | null }>}
    */
   static async open(key) {
-    const drafts = new KeptDrafts();
-    drafts.#key = key;
-    await drafts.#takeCarried();
-    const found = await drafts.#adopt();
-    return { drafts, found };
+    const store = new DraftStore();
+    store.#key = key;
+    await store.#takeFragment();
+    const found = await store.#adopt();
+    return { store, found };
   }
 
-  async #takeCarried() {
-    const [view, carried] = location.hash.split(CARRIED);
-    if (carried === undefined) return;
-    const entries = carried.split(",").slice(0, MOST_CARRIED).map((entry) => entry.split("."));
+  async #takeFragment() {
+    const [view, drafts] = location.hash.split(FRAGMENT);
+    if (drafts === undefined) return;
+    const entries = drafts.split(",").slice(0, FRAGMENT_DRAFTS_MAX).map((entry) => entry.split("."));
     for (const [name, cipher] of entries) {
       if (NAME.test(name) && await this.#read(cipher) !== null) localStorage.setItem(ENTRY + name, cipher);
     }
@@ -76,7 +76,7 @@ export class KeptDrafts {
     return draft;
   }
 
-  /** What an entry says, or null if it is not one of this user's. @returns {Promise<KeptDraft | null>} */
+  /** What an entry says, or null if it is not one of this user's. @returns {Promise<StoredDraft | null>} */
   async #read(cipher) {
     try {
       const bytes = toBytes(cipher);
@@ -87,8 +87,8 @@ export class KeptDrafts {
     }
   }
 
-  /** Keeps this draft in place of the one before; null keeps none. The newest one wins. */
-  keep(draft) {
+  /** Stores this draft in place of the one before; null removes it. The newest one wins. */
+  store(draft) {
     const waits = this.#next !== undefined;
     this.#next = draft;
     if (!waits) this.#writing = this.#writing.then(() => this.#write());
@@ -104,26 +104,26 @@ export class KeptDrafts {
       const cipher = new Uint8Array(await crypto.subtle.encrypt({ name: "AES-GCM", iv }, this.#key, plain));
       localStorage.setItem(ENTRY + this.#name, toText(new Uint8Array([...iv, ...cipher])));
     } catch {
-      // A browser that keeps nothing, or has no room: the draft is in this page alone.
+      // A browser that stores nothing, or has no room: the draft is in this page alone.
     }
   }
 
-  /** Everything is kept that was given. */
-  settled() {
+  /** Waits until everything is stored that was given. */
+  flush() {
     return this.#writing;
   }
 }
 
-/** Takes this tab's draft, and those that no open tab has, out of what is kept here, as the part of an address that carries them. */
-export async function carried() {
+/** Takes this tab's draft, and those that no open tab has, out of the store, as the fragment of an address. */
+export async function takeAsFragment() {
   const { held } = await navigator.locks.query();
   const open = new Set(held.map(({ name }) => name));
   const own = sessionStorage.getItem(TAB);
   const free = names().filter((name) => name !== own && !open.has(ENTRY + name));
-  const going = [own, ...free].filter((name) => name !== null && localStorage.getItem(ENTRY + name) !== null).slice(0, MOST_CARRIED);
+  const going = [own, ...free].filter((name) => name !== null && localStorage.getItem(ENTRY + name) !== null).slice(0, FRAGMENT_DRAFTS_MAX);
   const entries = going.map((name) => `${name}.${localStorage.getItem(ENTRY + name)}`);
   for (const name of going) localStorage.removeItem(ENTRY + name);
-  const passing = location.hash.split(CARRIED)[1];
+  const passing = location.hash.split(FRAGMENT)[1];
   const all = passing === undefined ? entries : [passing, ...entries];
-  return all.length === 0 ? "" : `${CARRIED}${all.join(",")}`;
+  return all.length === 0 ? "" : `${FRAGMENT}${all.join(",")}`;
 }

@@ -1,4 +1,4 @@
-//! `profile history`, `restore`, `delete`, `export` and `import`: each save can be taken back, whatever ended the program.
+//! `profile history`, `restore`, `delete`, `export` and `import`: each save comes back, whatever ended the program.
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
 
 use std::fs;
@@ -76,7 +76,7 @@ fn each_save_has_its_date_and_its_changes_and_comes_back() {
     home.done("restore contra");
     assert_eq!(home.text("contra"), shipped::text("contra").unwrap());
     home.done("restore contra");
-    assert_eq!(home.text("contra"), contra(2.5), "taken back once more");
+    assert_eq!(home.text("contra"), contra(2.5), "restored once more");
     home.done("delete contra");
     assert!(!home.file("contra").exists());
     home.done("restore contra");

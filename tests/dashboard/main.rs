@@ -7,7 +7,6 @@ mod browser;
 mod calibrate;
 #[path = "../support/clock.rs"]
 mod clock;
-mod comes_back;
 mod disturbance;
 mod editor;
 mod finger;
@@ -18,6 +17,7 @@ mod numbers;
 mod openings;
 mod pictures;
 mod profile_history;
+mod reconnection;
 mod reports;
 #[path = "../bridge/running.rs"]
 #[expect(dead_code, reason = "other tests use the rest of it")]

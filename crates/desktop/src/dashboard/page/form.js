@@ -55,7 +55,7 @@ export class Form {
   }
 
   /** Adds or removes something by `change`; says so, and the focus follows. */
-  #alter(sentence, goTo, change) {
+  #apply(sentence, goTo, change) {
     this.#goTo = goTo;
     change();
     announce(sentence);
@@ -86,14 +86,14 @@ export class Form {
 
   #add(table, name) {
     const path = TABLES[table].many ? [table, tablesOf(this.#draft.document, table).length] : [table];
-    this.#alter(`Added: ${name}.`, [`[data-group="${nameOf(path)}"] [data-field]`, `[data-group="${nameOf(path)}"] summary`],
+    this.#apply(`Added: ${name}.`, [`[data-group="${nameOf(path)}"] [data-field]`, `[data-group="${nameOf(path)}"] summary`],
       () => this.#draft.replace(withTable(this.#draft.text, table)));
   }
 
   /** The one that follows takes its place; else the one before, else what adds one. */
   #remove(table, index, title) {
     const neighbours = [index, index - 1].map((at) => `[data-group="${nameOf([table, at])}"] > summary`);
-    this.#alter(`Removed: ${title}.`, [...neighbours, `[data-add="${table}"]`], () => this.#draft.replace(withoutTable(this.#draft.text, table, index)));
+    this.#apply(`Removed: ${title}.`, [...neighbours, `[data-add="${table}"]`], () => this.#draft.replace(withoutTable(this.#draft.text, table, index)));
   }
 
   /** A table's keys; those that are not written and seldom wanted are folded away. */
@@ -155,13 +155,13 @@ export class Form {
   }
 
   #addEffect(path, effect, press_n) {
-    this.#alter(`Added: ${effect}.`, [`[data-part="${nameOf([...path, effect])}"] [data-field]`],
+    this.#apply(`Added: ${effect}.`, [`[data-part="${nameOf([...path, effect])}"] [data-field]`],
       () => this.#draft.replace(withEffect(this.#draft.text, path[1], effect, press_n)));
   }
 
   #removeEffect(path, effect) {
     const others = EFFECTS.filter((other) => other !== effect).map((other) => `[data-part="${nameOf([...path, other])}"] [data-field]`);
-    this.#alter(`Removed: ${effect}.`, [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.values.write([...path, effect], null));
+    this.#apply(`Removed: ${effect}.`, [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.values.write([...path, effect], null));
   }
 
   #bindings(path, device) {

@@ -1,4 +1,4 @@
-//! The last saves of each of the user's own profiles, so that every save can be taken back.
+//! The last saves of each of the user's own profiles, so that each of them can be restored.
 //!
 //! Each is a file of its own beside the others, put in its place whole. What stands in a profile is recorded before it is written over, whoever wrote
 //! it: so a kill between two steps loses nothing.

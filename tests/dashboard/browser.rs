@@ -90,6 +90,26 @@ impl Browser {
         );
     }
 
+    /// Loads the page of this tab anew.
+    pub(crate) fn reload(&self) {
+        self.post("refresh", &json!({}));
+    }
+
+    /// Opens another tab with this page and goes on in it; gives what [`Browser::tab`] takes to go back.
+    pub(crate) fn open_tab(&self, url: &str) -> String {
+        let handle = |value: Value| value.as_str().unwrap().to_owned();
+        let before = handle(self.ask(&format!("GET /session/{}/window", self.session), &Value::Null));
+        let new = self.post("window/new", &json!({"type": "tab"}));
+        self.tab(&handle(new["handle"].clone()));
+        self.post("url", &json!({"url": url}));
+        before
+    }
+
+    /// Goes on in this tab.
+    pub(crate) fn tab(&self, handle: &str) {
+        self.post("window", &json!({"handle": handle}));
+    }
+
     /// Goes to a view by its address.
     pub(crate) fn view(&self, name: &str) {
         self.run(&format!("location.hash = '#{name}'"));
@@ -143,6 +163,13 @@ impl Browser {
     pub(crate) fn picture(&self) -> Vec<u8> {
         let picture = self.ask(&format!("GET /session/{}/screenshot", self.session), &Value::Null);
         from_base64(picture.as_str().unwrap())
+    }
+
+    /// Lets the page have so many pixels, also fewer than a window can have.
+    pub(crate) fn show_in(&self, width: u32, height: u32) {
+        let params = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
+        let command = json!({"cmd": "Emulation.setDeviceMetricsOverride", "params": params});
+        self.post("goog/cdp/execute", &command);
     }
 
     /// Makes the window so large.

@@ -66,10 +66,12 @@ fn it_takes_grams_hears_presses_of_a_paused_game_is_stopped_and_goes_on() {
     shown.wait_until_playing();
     browser.view("guides");
     choose(&browser, "Start");
-    browser.wait("document.querySelector('#guides input[type=number]')?.labels[0].textContent.includes('Weight in grams')");
-    browser.run("document.querySelector('#guides input[type=number]').focus()");
+    browser.wait(
+        "document.querySelector('#guides input.number')?.labels[0].textContent.includes('Weight in grams')",
+    );
+    browser.run("document.querySelector('#guides input.number').focus()");
     browser.keys(&[], &["2", ENTER]);
-    browser.wait("document.querySelector('#guides [role=alert]').textContent.includes('30 to 1000 g')");
+    browser.wait("document.querySelector('#guides .number-error').textContent.includes('30 to 1000 g')");
     assert_ne!(shown.status()["state"], "paused");
     browser.keys(&[], &["0", "0", ENTER]);
     assert!(comes_true(|| shown.status()["state"] == "paused"), "{}", shown.status());
@@ -172,9 +174,9 @@ fn a_whole_calibration_ends_in_a_decoder() {
         }
     };
     choose(&browser, "Start");
-    browser.wait("document.querySelector('#guides input[type=number]')");
+    browser.wait("document.querySelector('#guides input.number')");
     picture("choosing.png");
-    browser.run("document.querySelector('#guides input[type=number]').focus()");
+    browser.run("document.querySelector('#guides input.number').focus()");
     browser.keys(&[], &["2", "0", "0", ENTER]);
     assert!(comes_true(|| is_doing(&shown, "press")), "{}", guide(&shown));
     (0..9).for_each(|number| press(&finger, place(number), 3.0, 600));

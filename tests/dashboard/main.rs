@@ -13,8 +13,11 @@ mod finger;
 mod guides;
 mod http;
 mod live;
+mod numbers;
 mod openings;
 mod pictures;
+mod profile_history;
+mod reconnection;
 mod reports;
 #[path = "../bridge/running.rs"]
 #[expect(dead_code, reason = "other tests use the rest of it")]

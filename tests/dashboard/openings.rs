@@ -67,7 +67,7 @@ impl Spied {
             for path in arguments.split('\0').filter_map(|argument| argument.strip_prefix(&address)) {
                 self.addresses += 1;
                 let path = path.split('#').next().unwrap_or_default();
-                let answer = asked_by_another_user(host, path);
+                let answer = asked_by_another_user(host, &format!("GET {path}"));
                 self.ways_in.extend(answer.filter(|line| line != "HTTP/1.1 403 Forbidden"));
             }
         }

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{Read, Write};
-use std::net::TcpStream;
+use std::net::{SocketAddrV4, TcpStream};
 use std::process::Command;
 
 use tactpad::pipeline::mapping::read::shipped;
@@ -138,11 +138,11 @@ fn each_answer_says_what_the_browser_may_do() {
 }
 
 /// The first line of what another user is answered.
-pub(crate) fn asked_by_another_user(host: &str, path: &str) -> Option<String> {
+pub(crate) fn asked_by_another_user(host: &str, request: &str) -> Option<String> {
     let (address, port) = host.split_once(':').unwrap();
     let script = format!(
         "exec 3<>/dev/tcp/{address}/{port}; \
-         printf 'GET {path} HTTP/1.1\\r\\nHost: {host}\\r\\nConnection: close\\r\\n\\r\\n' >&3; head -1 <&3"
+         printf '{request} HTTP/1.1\\r\\nHost: {host}\\r\\nConnection: close\\r\\n\\r\\n' >&3; head -1 <&3"
     );
     let mut other = Command::new("setpriv");
     other.args(["--reuid=65534", "--clear-groups", "bash", "-c", &script]);
@@ -160,9 +160,11 @@ fn the_page_opens_for_this_user_without_a_token_and_for_no_other() {
     assert_eq!(ask(&shown.host, "GET /open", &["Sec-Fetch-Site: cross-site"], b"").status, 401);
     // Only root can be another user, too.
     for _ in 0..20 {
-        match asked_by_another_user(&shown.host, "/open") {
-            Some(line) => assert_eq!(line, "HTTP/1.1 403 Forbidden"),
-            None => assert!(!rustix::process::getuid().is_root(), "setpriv"),
+        for request in ["GET /open", "POST /handshake"] {
+            match asked_by_another_user(&shown.host, request) {
+                Some(line) => assert_eq!(line, "HTTP/1.1 403 Forbidden"),
+                None => assert!(!rustix::process::getuid().is_root(), "setpriv"),
+            }
         }
     }
 }
@@ -188,14 +190,16 @@ fn connections_that_ask_for_nothing_keep_nobody_out() {
 #[test]
 fn it_listens_on_loopback_alone() {
     let shown = shown();
-    let port: u16 = shown.host.rsplit(':').next().unwrap().parse().unwrap();
+    let address: SocketAddrV4 = shown.host.parse().unwrap();
+    let [ip, port] = [u32::from_ne_bytes(address.ip().octets()), u32::from(address.port())];
+    assert!(address.ip().is_loopback(), "{address}");
     let table = fs::read_to_string("/proc/net/tcp").unwrap();
-    let listening = |address: &str| table.contains(&format!(" {address}:{port:04X} 00000000:0000 0A"));
-    assert!(listening("0100007F"), "{table}");
-    assert!(!listening("00000000"));
+    let listening = |ip: u32| table.contains(&format!(" {ip:08X}:{port:04X} 00000000:0000 0A"));
+    assert!(listening(ip), "{table}");
+    assert!(!listening(0));
     let sixth = fs::read_to_string("/proc/net/tcp6").unwrap_or_default();
     assert!(!sixth.contains(&format!(":{port:04X} 00000000000000000000000000000000:0000 0A")), "{sixth}");
-    assert!(TcpStream::connect(("127.0.0.1", port)).is_ok());
+    assert!(TcpStream::connect(address).is_ok());
 }
 
 #[test]

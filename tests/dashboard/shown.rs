@@ -1,7 +1,7 @@
 //! A bridge that shows its page, with a folder of its own.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
@@ -24,10 +24,16 @@ impl Shown {
 
     /// The same in a folder that is there, into the event log `log` in it.
     pub(crate) fn start_in(folder: tempfile::TempDir, pad: &str, profile: &str) -> Self {
+        let home = folder.path().to_owned();
+        Self::start_at(&home, folder, pad, profile)
+    }
+
+    /// The same for a user whose settings and whose state are in `home`.
+    pub(crate) fn start_at(home: &Path, folder: tempfile::TempDir, pad: &str, profile: &str) -> Self {
         let mut program = Running::program(env!("CARGO_BIN_EXE_tactpad"), folder.path());
         program.args(["run", "--pad", pad, "--profile", profile, "--dashboard", "--output"]);
         program.arg(format!("log:{}", folder.path().join("log").display()));
-        program.env("XDG_STATE_HOME", folder.path());
+        program.env("XDG_STATE_HOME", home).env("XDG_CONFIG_HOME", home);
         let running = Running::start(folder, program);
         let mut url = String::new();
         let told = comes_true(|| {

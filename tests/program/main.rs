@@ -22,6 +22,8 @@ mod networks;
 mod paper;
 mod plot;
 #[cfg(target_os = "linux")]
+mod profile_history;
+#[cfg(target_os = "linux")]
 mod profiles;
 mod protocol;
 mod ran;

@@ -72,6 +72,18 @@ pub(crate) fn read(path: &Path) -> Result<Decoder, Failure> {
     Ok(decoder)
 }
 
+/// The bytes of a decoder, which can be read.
+pub(crate) fn whole(path: &Path) -> Result<Vec<u8>, Failure> {
+    let bytes = bytes(path).map_err(|why| unusable(path, &why))?;
+    check(&bytes).map_err(|error| unusable(path, &error.to_string()))?;
+    Ok(bytes)
+}
+
+/// Whether bytes are those of a decoder.
+pub(crate) fn check(bytes: &[u8]) -> Result<(), Unreadable> {
+    read::decoder(bytes).map(drop)
+}
+
 /// Warns of a network that may be of another pad.
 fn say_doubts(path: &Path, bytes: &[u8], decoder: &Decoder) {
     if let Some(PressErrors { place_mm, force_n, .. }) = read::doubts(bytes, decoder) {

@@ -154,6 +154,114 @@ fn unsaved(unsaved: SaveError) -> Result<Response, Refusal> {
     }
 }
 
+/// `GET /api/profile/NAME/history`: the saves that are kept.
+pub(super) async fn history(State(app): Shared, Path(name): Path<String>) -> ApiResult {
+    let saves = wait(move || app.host.history(&name)).await?;
+    Ok(Json(json!({"saves": saves})).into_response())
+}
+
+/// `GET /api/profile/NAME/history/ID`: the text of a save, or of the profile inside the program.
+pub(super) async fn earlier(State(app): Shared, Path((name, id)): Path<(String, String)>) -> ApiResult {
+    let text = wait(move || match id.as_str() {
+        "shipped" => shipped::text(&name).map(str::to_owned),
+        id => app.host.saved(&name, id.parse().ok()?),
+    });
+    let error = "this save is no longer kept: look at the list again";
+    let text = text.await?.ok_or_else(|| Refusal::new(StatusCode::NOT_FOUND, error))?;
+    Ok(Json(json!({"text": text})).into_response())
+}
+
+/// `DELETE /api/profile/NAME`: what plays must have something that plays in its place.
+pub(super) async fn delete(State(app): Shared, Path(name): Path<String>) -> ApiResult {
+    wait(move || {
+        let is_playing = app.host.playing() == name;
+        if is_playing && shipped::text(&name).is_none() {
+            let error = format!("{name} is in play: play another profile first");
+            return Err(Refusal::new(StatusCode::CONFLICT, error));
+        }
+        if let Err(why) = app.host.delete(&name) {
+            return unsaved(why);
+        }
+        if is_playing {
+            app.forget_preview();
+            app.ask(Request::Profile(None))?;
+        }
+        Ok(Json(json!({"ok": true})).into_response())
+    })
+    .await?
+}
+
+#[derive(Deserialize)]
+pub(super) struct RenameRequest {
+    to: String,
+}
+
+/// `POST /api/profile/NAME/rename`: what plays goes on under its new name.
+pub(super) async fn rename(
+    State(app): Shared,
+    Path(name): Path<String>,
+    request: Result<Json<RenameRequest>, JsonRejection>,
+) -> ApiResult {
+    let RenameRequest { to } = body(request)?;
+    wait(move || {
+        let is_playing = app.host.playing() == name;
+        if let Err(why) = app.host.rename(&name, &to) {
+            return unsaved(why);
+        }
+        if is_playing {
+            app.forget_preview();
+            app.ask(Request::Profile(Some(to)))?;
+        }
+        Ok(Json(json!({"ok": true})).into_response())
+    })
+    .await?
+}
+
+/// `GET /api/decoders`: the user's own, which may go along with a profile.
+pub(super) async fn decoders(State(app): Shared) -> ApiResult {
+    let decoders = wait(move || app.host.decoders()).await?;
+    Ok(Json(json!({"decoders": decoders})).into_response())
+}
+
+/// `GET /api/profile/NAME/export`: a profile as a file.
+pub(super) async fn export(State(app): Shared, Path(name): Path<String>) -> ApiResult {
+    exported(wait(move || app.host.exported(&name, None)).await?)
+}
+
+/// `GET /api/profile/NAME/export/DECODER`: a profile and a decoder as a file.
+pub(super) async fn export_with_decoder(
+    State(app): Shared,
+    Path((name, decoder)): Path<(String, String)>,
+) -> ApiResult {
+    exported(wait(move || app.host.exported(&name, Some(&decoder))).await?)
+}
+
+fn exported(document: Option<String>) -> ApiResult {
+    let error = "there is no such profile or decoder: choose from the lists";
+    let document = document.ok_or_else(|| Refusal::new(StatusCode::NOT_FOUND, error))?;
+    let head = [(header::CONTENT_TYPE, "application/json"), (header::CONTENT_DISPOSITION, "attachment")];
+    Ok((head, document).into_response())
+}
+
+#[derive(Deserialize)]
+pub(super) struct ImportRequest {
+    document: String,
+    name: String,
+}
+
+/// `POST /api/import`: makes the profile of an exported file the user's own.
+pub(super) async fn import(
+    State(app): Shared,
+    request: Result<Json<ImportRequest>, JsonRejection>,
+) -> ApiResult {
+    let ImportRequest { document, name } = body(request)?;
+    wait(move || match app.host.import(&document, &name) {
+        Ok(decoder) => Ok(Json(json!({"ok": true, "decoder": decoder})).into_response()),
+        Err(why) => unsaved(why),
+    })
+    .await?
+}
+
 pub(super) async fn schema() -> Response {
     ([(header::CONTENT_TYPE, "application/json")], shipped::schema()).into_response()
 }

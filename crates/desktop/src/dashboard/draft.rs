@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Number, Value};
 
+use super::stale_comments::marked;
 use tactpad_core::pipeline::mapping::profile::sketch::Sketch;
 use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_core::pipeline::mapping::read::shear::bound_to_shear;
@@ -46,7 +47,7 @@ impl Draft {
         let changed = changes
             .and_then(|changes| edit::changed(&self.text, &changes).map_err(|error| error.to_string()));
         let (text, error) = match changed {
-            Ok(text) => (text, None),
+            Ok(text) => (marked(&self.text, &text), None),
             Err(error) => (self.text, Some(error)),
         };
         let (profile, diagnostics) = check::read(&text, output);

@@ -3,9 +3,12 @@
 //! A page of another origin can make a browser send requests here, and a name that it owns can be made to lead here. So the host must be
 //! this server's own address, an origin, where the browser tells one, must be this server, and everything but the page's own files asks for
 //! the token, which no other page knows.
+//!
+//! Whatever once answered at an address can leave a program in the browser there. So each start has an address at which nobody was before.
+//! At those of earlier starts, to which pages come back, there are the page's files and the way to the new address, and no token counts.
 
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
+use std::net::SocketAddrV4;
 use std::sync::Arc;
 
 use axum::Extension;
@@ -14,9 +17,11 @@ use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
 use axum::http::{Method, StatusCode, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Redirect, Response};
+use serde::Serialize;
 
 use super::listener::Peer;
 use super::refusal::Refusal;
+use super::user_key::{Proven, UserKey, hex, random};
 
 /// A body may be this long.
 pub(super) const BODY_BYTES_MAX: usize = 1 << 20;
@@ -39,11 +44,35 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 const POLICY_OF_REPORTS: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; \
                                  form-action 'none'; frame-ancestors 'none'; sandbox";
 
-/// The port of this server, and the token that requests need.
+/// Where a page finds out whether this is the program, and where the page is now.
+pub(super) const HANDSHAKE_PATH: &str = "/handshake";
+
+/// The addresses of this server, the token that requests need, and the key by which it proves itself.
 #[derive(Clone, Debug)]
 pub(super) struct Guard {
-    port: u16,
+    address: SocketAddrV4,
+    /// Addresses of earlier starts.
+    earlier: Vec<SocketAddrV4>,
     token: String,
+    key: UserKey,
+}
+
+/// The answer to a handshake.
+#[derive(Debug, Serialize)]
+pub(super) struct HandshakeAnswer {
+    /// Where the page is now.
+    origin: String,
+    /// The token, where the page is asked; empty at an earlier address.
+    token: String,
+    /// That this is the program that has the user's key.
+    proof: String,
+}
+
+/// Which of its addresses a request names.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place {
+    Present,
+    Earlier,
 }
 
 impl Guard {
@@ -51,33 +80,51 @@ impl Guard {
     ///
     /// # Errors
     /// The system has no random numbers.
-    pub(super) fn new(port: u16) -> io::Result<Self> {
-        let mut bytes = [0; TOKEN_BYTES];
-        File::open("/dev/urandom")?.read_exact(&mut bytes)?;
-        Ok(Self { port, token: bytes.iter().map(|byte| format!("{byte:02x}")).collect() })
+    pub(super) fn new(address: SocketAddrV4, earlier: Vec<SocketAddrV4>, key: UserKey) -> io::Result<Self> {
+        Ok(Self { address, earlier, token: hex(&random::<TOKEN_BYTES>()?), key })
+    }
+
+    /// Where the page of this start is.
+    pub(super) const fn address(&self) -> SocketAddrV4 {
+        self.address
     }
 
     /// The address that shows the page.
     pub(super) fn url(&self) -> String {
-        format!("http://127.0.0.1:{}/?token={}", self.port, self.token)
+        format!("http://{}/?token={}", self.address, self.token)
     }
 
-    fn hosts(&self) -> [String; 3] {
-        ["127.0.0.1", "localhost", "[::1]"].map(|name| format!("{name}:{}", self.port))
+    /// The keys that the page's own programs have.
+    pub(super) const fn key(&self) -> &UserKey {
+        &self.key
+    }
+
+    /// The answer to a page that sent `nonce` to `host`.
+    pub(super) fn handshake(&self, host: &str, nonce: &str) -> HandshakeAnswer {
+        let is_present = self.place(host) == Some(Place::Present);
+        let token = if is_present { self.token.clone() } else { String::new() };
+        let origin = format!("http://{}", self.address);
+        let proof = self.key.proof(Proven { host, nonce, origin: &origin, token: &token });
+        HandshakeAnswer { origin, token, proof }
+    }
+
+    fn place(&self, host: &str) -> Option<Place> {
+        // Every spelling but this one could lead elsewhere.
+        let is = |address: &SocketAddrV4| address.to_string() == host;
+        let earlier = || self.earlier.iter().any(is).then_some(Place::Earlier);
+        if is(&self.address) { Some(Place::Present) } else { earlier() }
     }
 
     /// Refuses what nobody may ask.
     fn check(&self, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<(), Refusal> {
-        let hosts = self.hosts();
-        if !text(headers, header::HOST).is_some_and(|host| hosts.iter().any(|own| own == host)) {
+        let host = text(headers, header::HOST).unwrap_or_default();
+        let Some(place) = self.place(host) else {
             return Err(Refusal::new(
                 StatusCode::FORBIDDEN,
                 "the host is not this server: use the address that it printed",
             ));
-        }
-        let is_own = |origin: &str| {
-            origin.strip_prefix("http://").is_some_and(|origin| hosts.iter().any(|own| own == origin))
         };
+        let is_own = |origin: &str| origin.strip_prefix("http://") == Some(host);
         let is_foreign =
             headers.contains_key(header::ORIGIN) && !text(headers, header::ORIGIN).is_some_and(is_own);
         let site = headers.get(SITE).map(HeaderValue::as_bytes);
@@ -86,10 +133,11 @@ impl Guard {
         {
             return Err(Refusal::new(StatusCode::FORBIDDEN, "another page may not ask here"));
         }
+        let is_file = uri.path() == OPEN[0] || uri.path().starts_with(OPEN[1]);
         let is_navigation =
             uri.path() == OPEN_PATH && site.is_none_or(|site| matches!(site, b"same-origin" | b"none"));
-        let is_open = uri.path() == OPEN[0] || uri.path().starts_with(OPEN[1]) || is_navigation;
-        if !is_open && !self.has_token(uri, headers) {
+        let is_open = is_file || is_navigation || uri.path() == HANDSHAKE_PATH;
+        if !is_open && (place == Place::Earlier || !self.has_token(uri, headers)) {
             let error = "this needs the token of the address: open the page from the tray, or with `tactpad ctl dashboard`";
             return Err(Refusal::new(StatusCode::UNAUTHORIZED, error));
         }
@@ -116,7 +164,7 @@ pub(super) fn too_long() -> Refusal {
     Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, "a request has one megabyte at most")
 }
 
-fn text(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
+pub(super) fn text(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     let mut all = headers.get_all(name).iter();
     let only = all.next().filter(|_| all.next().is_none())?;
     only.to_str().ok()
@@ -170,7 +218,11 @@ mod tests {
     use super::*;
 
     fn guard() -> Guard {
-        Guard { port: 8080, token: "abc".into() }
+        let at = |text: &str| text.parse().unwrap();
+        let key = UserKey::from_hex(&"07".repeat(32)).unwrap();
+        let mut guard = Guard::new(at("127.1.2.3:8080"), vec![at("127.4.5.6:8080")], key).unwrap();
+        guard.token = "abc".into();
+        guard
     }
 
     fn status(method: &Method, uri: &str, headers: &[(&'static str, &str)]) -> u16 {
@@ -184,13 +236,16 @@ mod tests {
     #[test]
     fn the_host_is_this_server() {
         for (host, expected) in [
-            ("127.0.0.1:8080", 200),
-            ("localhost:8080", 200),
-            ("[::1]:8080", 200),
-            ("127.0.0.1", 403),
-            ("127.0.0.1:8081", 403),
+            ("127.1.2.3:8080", 200),
+            ("127.4.5.6:8080", 200),
+            ("127.1.2.3", 403),
+            ("127.1.2.3:8081", 403),
+            ("127.0.0.1:8080", 403),
+            ("localhost:8080", 403),
+            ("[::1]:8080", 403),
             ("evil.example:8080", 403),
-            ("127.0.0.1:8080.evil.example", 403),
+            ("127.1.2.3:8080.evil.example", 403),
+            ("127.1.2.003:8080", 403),
         ] {
             assert_eq!(status(&Method::GET, "/", &[("host", host)]), expected, "{host}");
         }
@@ -199,13 +254,18 @@ mod tests {
 
     #[test]
     fn another_origin_is_refused_before_its_token_is_looked_at() {
-        let host = ("host", "127.0.0.1:8080");
+        let host = ("host", "127.1.2.3:8080");
         let asked =
             |extra: (&'static str, &str)| status(&Method::POST, "/api/pause?token=abc", &[host, extra]);
-        assert_eq!(asked(("origin", "http://127.0.0.1:8080")), 200);
-        for origin in
-            ["http://evil.example", "null", "https://127.0.0.1:8080", "http://127.0.0.1:80801", "file://"]
-        {
+        assert_eq!(asked(("origin", "http://127.1.2.3:8080")), 200);
+        for origin in [
+            "http://evil.example",
+            "null",
+            "https://127.1.2.3:8080",
+            "http://127.1.2.3:80801",
+            "http://127.4.5.6:8080",
+            "file://",
+        ] {
             assert_eq!(asked(("origin", origin)), 403, "{origin}");
         }
         assert_eq!(asked(("sec-fetch-site", "cross-site")), 403);
@@ -214,7 +274,7 @@ mod tests {
 
     #[test]
     fn everything_but_the_page_needs_the_whole_token() {
-        let host = ("host", "127.0.0.1:8080");
+        let host = ("host", "127.1.2.3:8080");
         let asked =
             |uri: &str, more: &[(&'static str, &str)]| status(&Method::GET, uri, &[&[host], more].concat());
         assert_eq!(asked("/page/main.js", &[]), 200);
@@ -238,7 +298,7 @@ mod tests {
     fn a_long_body_is_refused_before_it_is_read() {
         let asked = |length: &str| {
             let headers =
-                [("host", "127.0.0.1:8080"), ("authorization", "Bearer abc"), ("content-length", length)];
+                [("host", "127.1.2.3:8080"), ("authorization", "Bearer abc"), ("content-length", length)];
             status(&Method::PUT, "/api/profile/x", &headers)
         };
         assert_eq!((asked("1048576"), asked("1048577"), asked("104857600")), (200, 413, 413));
@@ -246,7 +306,23 @@ mod tests {
 
     #[test]
     fn tokens_are_new_and_long() {
-        let [first, second] = [Guard::new(1), Guard::new(1)].map(|guard| guard.unwrap().token);
-        assert!(first != second && first.len() == 2 * TOKEN_BYTES);
+        let new = || {
+            let guard = guard();
+            Guard::new(guard.address, guard.earlier, guard.key).unwrap().token
+        };
+        assert!(new() != new() && new().len() == 2 * TOKEN_BYTES);
+    }
+
+    #[test]
+    fn an_earlier_address_has_the_pages_files_and_the_way_on_and_knows_no_token() {
+        let host = ("host", "127.4.5.6:8080");
+        let asked = |uri: &str| status(&Method::GET, uri, &[host, ("authorization", "Bearer abc")]);
+        assert_eq!([asked("/"), asked("/page/main.js"), asked("/open"), asked("/handshake")], [200; 4]);
+        assert_eq!([asked("/api/status"), asked("/report/0"), asked("/sheet/marks.svg")], [401; 3]);
+        let told = |host: &str| guard().handshake(host, "1");
+        let (here, there) = (told("127.1.2.3:8080"), told("127.4.5.6:8080"));
+        assert_eq!([here.origin.as_str(), &there.origin], ["http://127.1.2.3:8080"; 2]);
+        assert_eq!([here.token.as_str(), &there.token], ["abc", ""]);
+        assert_ne!(here.proof, there.proof);
     }
 }

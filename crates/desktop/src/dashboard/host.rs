@@ -44,6 +44,36 @@ pub trait DashboardHost: Send + Sync {
     /// Nothing was written.
     fn save(&self, name: &str, text: &str, over: &Overwrite) -> Result<SavedProfile, SaveError>;
 
+    /// The saves of a profile of the user's own, the newest first, as `tactpad profile history --json` prints them.
+    fn history(&self, name: &str) -> serde_json::Value;
+
+    /// The text of the save that has this `id`.
+    fn saved(&self, name: &str, id: u64) -> Option<String>;
+
+    /// Removes a profile of the user's own; its history stays.
+    ///
+    /// # Errors
+    /// It is still there.
+    fn delete(&self, name: &str) -> Result<(), SaveError>;
+
+    /// Gives a profile of the user's own another name, and its history with it.
+    ///
+    /// # Errors
+    /// It has the name that it had.
+    fn rename(&self, from: &str, to: &str) -> Result<(), SaveError>;
+
+    /// The names of the user's own decoders.
+    fn decoders(&self) -> Vec<String>;
+
+    /// A profile as a file for export, with the user's own decoder of this name if one is named; `None` if there is no such profile or decoder.
+    fn exported(&self, name: &str, decoder: Option<&str>) -> Option<String>;
+
+    /// Makes the profile of an exported file the user's own under a name that is new; the path of its decoder, if one is in it.
+    ///
+    /// # Errors
+    /// There is no new profile.
+    fn import(&self, document: &str, name: &str) -> Result<Option<String>, SaveError>;
+
     /// The findings about this machine, as `tactpad doctor --json` prints them.
     fn doctor(&self) -> serde_json::Value;
 

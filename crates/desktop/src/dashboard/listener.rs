@@ -1,7 +1,7 @@
 //! Connections to the page: a limited number, and none that says nothing for long. The pad and `ctl` need descriptors, too.
 
 use std::fs;
-use std::future::Future;
+use std::future::{Future, poll_fn};
 use std::io;
 use std::net::SocketAddr;
 use std::pin::Pin;
@@ -30,9 +30,9 @@ const RETRY: Duration = Duration::from_millis(250);
 /// `ESTABLISHED` in the kernel's table of connections.
 const ESTABLISHED: &str = "01";
 
-/// Lets connections in.
+/// Lets connections in, at all addresses of this server.
 pub(super) struct LimitedListener {
-    listener: TcpListener,
+    listeners: Vec<TcpListener>,
     own: Arc<Semaphore>,
     others: Arc<Semaphore>,
 }
@@ -53,9 +53,18 @@ pub(super) struct LimitedStream {
 }
 
 impl LimitedListener {
-    pub(super) fn new(listener: TcpListener) -> Self {
+    pub(super) fn new(listeners: Vec<TcpListener>) -> Self {
         let [own, others] = [OWN_MAX, OTHERS_MAX].map(|count| Arc::new(Semaphore::new(count)));
-        Self { listener, own, others }
+        Self { listeners, own, others }
+    }
+
+    /// The next connection at any of them.
+    async fn next(&self) -> io::Result<(TcpStream, SocketAddr)> {
+        poll_fn(|cx| {
+            let mut polled = self.listeners.iter().map(|listener| listener.poll_accept(cx));
+            polled.find(Poll::is_ready).unwrap_or(Poll::Pending)
+        })
+        .await
     }
 }
 
@@ -65,7 +74,7 @@ impl Listener for LimitedListener {
 
     async fn accept(&mut self) -> (LimitedStream, Peer) {
         loop {
-            let Ok((stream, address)) = self.listener.accept().await else {
+            let Ok((stream, address)) = self.next().await else {
                 sleep(RETRY).await;
                 continue;
             };

@@ -7,7 +7,8 @@
 //! the page ─api→ requests on the bridge, profiles of the host
 //! ```
 //!
-//! It is served on the loopback interface alone. Each request is looked at by `guard.rs`: its host, its origin, its token. The live path does
+//! It is served on the loopback interface alone. Each request is looked at by `guard.rs`: its host, its origin, its token; by
+//! the handshake in `handshake.rs` a page finds the bridge that starts after the one that gave it. The live path does
 //! nothing for the page but hand over its calls ([`tactpad_bridge::observer`]); the page's own pipeline makes them again on another thread, so the
 //! page sees each event, and each stage is timed, without an instrument in the live path.
 
@@ -20,6 +21,7 @@ mod feed;
 mod frame;
 mod guard;
 mod guides;
+mod handshake;
 pub mod host;
 mod listener;
 mod refusal;
@@ -28,4 +30,6 @@ mod rewind;
 mod ring;
 pub mod server;
 mod shadow;
+mod stale_comments;
+pub mod user_key;
 mod websocket;

@@ -1,7 +1,7 @@
-//! The server: opens a port of the loopback interface and answers on a thread of its own.
+//! The server: opens addresses of the loopback interface and answers on a thread of its own.
 
 use std::io;
-use std::net::{Ipv4Addr, TcpListener};
+use std::net::{Ipv4Addr, SocketAddrV4, TcpListener};
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex};
 use std::thread;
@@ -12,34 +12,46 @@ use axum::{Extension, Router, middleware};
 
 use super::app_state::{AppState, BridgeHandles};
 use super::feed::Feed;
-use super::guard::{BODY_BYTES_MAX, Guard, OPEN_PATH, open, watch};
+use super::guard::{BODY_BYTES_MAX, Guard, HANDSHAKE_PATH, OPEN_PATH, open, watch};
 use super::host::DashboardHost;
 use super::listener::{LimitedListener, Peer};
 use super::shadow::{self, ShadowState};
-use super::{api, assets, websocket};
+use super::user_key::{UserKey, random};
+use super::{api, assets, handshake, websocket};
 use tactpad_bridge::event_loop::Bridge;
 use tactpad_bridge::observer::{Observation, Observer, observe};
 use tactpad_bridge::request::RequestSender;
 use tactpad_bridge::timing::Timing;
 
-/// A server that has its port, but shows no bridge yet.
+/// A server that has its addresses, but shows no bridge yet.
 pub struct Dashboard {
-    listener: TcpListener,
+    listeners: Vec<TcpListener>,
     guard: Guard,
     observed: Receiver<Observation>,
 }
 
 impl Dashboard {
-    /// Opens `port` of the loopback interface, or any with 0. The observer belongs to the bridge that is to be shown.
+    /// Opens an address of the loopback interface at which nobody was before, on the port of the first of the `earlier` ones if that is
+    /// free; and those themselves as far as they are free. The observer belongs to the bridge that is to be shown.
     ///
     /// # Errors
-    /// The port is taken, or the system has no random numbers for the token.
-    pub fn open(port: u16) -> io::Result<(Self, Observer)> {
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
-        listener.set_nonblocking(true)?;
-        let guard = Guard::new(listener.local_addr()?.port())?;
+    /// There is no port, or the system has no random numbers.
+    pub fn open(earlier: &[SocketAddrV4], key: UserKey) -> io::Result<(Self, Observer)> {
+        let ip = fresh_ip()?;
+        let port = earlier.first().map_or(0, SocketAddrV4::port);
+        let listener = TcpListener::bind((ip, port)).or_else(|_| TcpListener::bind((ip, 0)))?;
+        let address = SocketAddrV4::new(ip, listener.local_addr()?.port());
+        let opened = |address: &SocketAddrV4| Some((TcpListener::bind(address).ok()?, *address));
+        let (again, earlier): (Vec<_>, _) = earlier.iter().filter_map(opened).unzip();
+        let listeners: Vec<_> = [listener].into_iter().chain(again).collect();
+        listeners.iter().try_for_each(|listener| listener.set_nonblocking(true))?;
         let (observer, observed) = observe();
-        Ok((Self { listener, guard, observed }, observer))
+        Ok((Self { listeners, guard: Guard::new(address, earlier, key)?, observed }, observer))
+    }
+
+    /// The address of this start, at which later ones are to be, too.
+    pub const fn address(&self) -> SocketAddrV4 {
+        self.guard.address()
     }
 
     /// The address that shows the page; whoever has it can use the bridge.
@@ -65,11 +77,12 @@ impl Dashboard {
         let app = Arc::new(AppState::new(sender, host, feed, shadow, handles));
         let router = router(app, Arc::new(self.guard));
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-        let listener = self.listener;
+        let listeners = self.listeners;
         thread::Builder::new().name("dashboard".into()).spawn(move || {
             // It serves until the process ends; a port that fails has no one to tell.
             let _ = runtime.block_on(async move {
-                let listener = LimitedListener::new(tokio::net::TcpListener::from_std(listener)?);
+                let listeners = listeners.into_iter().map(tokio::net::TcpListener::from_std);
+                let listener = LimitedListener::new(listeners.collect::<io::Result<_>>()?);
                 axum::serve(listener, router.into_make_service_with_connect_info::<Peer>()).await
             });
         })?;
@@ -77,10 +90,18 @@ impl Dashboard {
     }
 }
 
+/// An address of the loopback interface, one of four million; few programs use any of them.
+fn fresh_ip() -> io::Result<Ipv4Addr> {
+    let [second, third, fourth] = random()?;
+    Ok(Ipv4Addr::new(127, 64 + second % 64, third, fourth))
+}
+
 fn router(app: Arc<AppState>, guard: Arc<Guard>) -> Router {
     Router::new()
         .route("/", get(assets::index))
         .route(OPEN_PATH, get(open))
+        .route(HANDSHAKE_PATH, post(handshake::answer))
+        .route("/api/keys", get(handshake::keys))
         .route("/page/{name}", get(assets::file))
         .route("/report/{id}", get(api::report))
         .route("/sheet/{name}", get(api::sheet))
@@ -88,7 +109,14 @@ fn router(app: Arc<AppState>, guard: Arc<Guard>) -> Router {
         .route("/api/status", get(api::status))
         .route("/api/schema", get(api::schema))
         .route("/api/profiles", get(api::profiles))
-        .route("/api/profile/{name}", get(api::profile).put(api::save))
+        .route("/api/profile/{name}", get(api::profile).put(api::save).delete(api::delete))
+        .route("/api/profile/{name}/history", get(api::history))
+        .route("/api/profile/{name}/history/{id}", get(api::earlier))
+        .route("/api/profile/{name}/rename", post(api::rename))
+        .route("/api/profile/{name}/export", get(api::export))
+        .route("/api/profile/{name}/export/{decoder}", get(api::export_with_decoder))
+        .route("/api/import", post(api::import))
+        .route("/api/decoders", get(api::decoders))
         .route("/api/play", post(api::play))
         .route("/api/draft", post(api::draft))
         .route("/api/preview", post(api::preview).delete(api::end_preview))

@@ -64,6 +64,9 @@ const SECONDS: f64 = 20.0;
 /// No gesture of the player takes longer.
 const SECONDS_OF_A_GESTURE_MAX: u32 = 60;
 
+/// The state file of the page's addresses; no name of a bridge has a dot.
+const PAGE_MEMORY: &str = "page-addresses.demo";
+
 /// The report of `tactpad demo`.
 #[derive(Serialize)]
 struct Summary {
@@ -96,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let audience = Audience::Nobody;
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let requests = requests(None, audience)?;
-    let mut prepared = arguments.shown.prepare(&requests, &host.selection(), output.choice())?;
+    let mut prepared = arguments.shown.prepare(PAGE_MEMORY, &requests, &host.selection(), output.choice())?;
     if let Some(url) = &prepared.url {
         if_read(tell(arguments, &format!("Dashboard: {url}")))?;
     }

@@ -60,9 +60,10 @@ impl DisplayOptions {
         false
     }
 
-    /// Opens the displays of the bridge that `requests` reach.
+    /// Opens the displays of the bridge that `requests` reach. `memory` is the state file of the page's addresses.
     pub(super) fn prepare(
         self,
+        memory: &str,
         requests: &Requests,
         selection: &Arc<Mutex<ProfileSelection>>,
         output: OutputChoice,
@@ -70,7 +71,7 @@ impl DisplayOptions {
         let prepared = OpenedDisplays::default();
         #[cfg(feature = "dashboard")]
         let prepared = match self.dashboard {
-            true => prepared.with_page(requests.sender()?, Arc::clone(selection), output)?,
+            true => prepared.with_page(memory, requests.sender()?, Arc::clone(selection), output)?,
             false => prepared,
         };
         #[cfg(feature = "tray")]
@@ -78,7 +79,7 @@ impl DisplayOptions {
             true => prepared.with_icon(requests.sender()?, Arc::clone(selection)),
             false => prepared,
         };
-        let _ = (requests, selection, output);
+        let _ = (memory, requests, selection, output);
         Ok(prepared)
     }
 }
@@ -87,11 +88,12 @@ impl OpenedDisplays {
     #[cfg(feature = "dashboard")]
     fn with_page(
         self,
+        memory: &str,
         sender: RequestSender,
         selection: Arc<Mutex<ProfileSelection>>,
         output: OutputChoice,
     ) -> Result<Self, Failure> {
-        let (page, observer) = Page::open(sender, selection, output)?;
+        let (page, observer) = Page::open(memory, sender, selection, output)?;
         let (observer, url, timing) = (Some(observer), Some(page.url()), Some(Timing::default()));
         Ok(Self { page: Some(page), observer, url, timing, ..self })
     }

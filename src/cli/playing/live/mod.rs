@@ -27,6 +27,8 @@ mod newest;
 mod output;
 #[cfg(feature = "dashboard")]
 mod page;
+#[cfg(feature = "dashboard")]
+mod page_memory;
 mod playing;
 mod profile_reader;
 mod profile_selection;

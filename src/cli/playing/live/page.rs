@@ -6,10 +6,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde_json::Value;
 
 use super::profile_selection::ProfileSelection;
-use super::{calibrated, doctor, reported};
+use super::{calibrated, doctor, page_memory, reported};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
-use crate::cli::printing::written::reason;
+use crate::cli::printing::written::{reason, say};
 use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::observer::Observer;
 use tactpad::bridge::request::RequestSender;
@@ -32,18 +32,24 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// Opens a port for the page of a bridge that `sender` reaches, and gives the observer that the bridge needs.
+    /// Opens an address for the page of a bridge that `sender` reaches, and gives the observer that the bridge needs. `memory` is the
+    /// state file of addresses.
     pub(super) fn open(
+        memory: &str,
         sender: RequestSender,
         selection: Arc<Mutex<ProfileSelection>>,
         output: OutputChoice,
     ) -> Result<(Self, Observer), Failure> {
-        let (dashboard, observer) = Dashboard::open(0).map_err(|error| {
+        let earlier = page_memory::addresses(memory);
+        let (dashboard, observer) = Dashboard::open(&earlier, page_memory::key()?).map_err(|error| {
             Failure::Failed(format!(
                 "the dashboard has no port: {}; start without --dashboard",
                 reason(&error)
             ))
         })?;
+        if let Err(failure) = page_memory::keep(memory, dashboard.address(), &earlier) {
+            say(failure.sentence());
+        }
         Ok((Self { dashboard, sender, shelf: Arc::new(Shelf { selection, output }) }, observer))
     }
 
@@ -87,6 +93,34 @@ impl DashboardHost for Shelf {
 
     fn save(&self, name: &str, text: &str, over: &Overwrite) -> Result<SavedProfile, SaveError> {
         profile::save(name, text, over)
+    }
+
+    fn history(&self, name: &str) -> Value {
+        serde_json::to_value(profile::listed(name)).unwrap_or_default()
+    }
+
+    fn saved(&self, name: &str, id: u64) -> Option<String> {
+        profile::saved(name, id)
+    }
+
+    fn delete(&self, name: &str) -> Result<(), SaveError> {
+        profile::delete(name)
+    }
+
+    fn rename(&self, from: &str, to: &str) -> Result<(), SaveError> {
+        profile::rename(from, to)
+    }
+
+    fn decoders(&self) -> Vec<String> {
+        profile::decoders().into_iter().map(|(name, _)| name).collect()
+    }
+
+    fn exported(&self, name: &str, decoder: Option<&str>) -> Option<String> {
+        profile::exported(name, decoder)
+    }
+
+    fn import(&self, document: &str, name: &str) -> Result<Option<String>, SaveError> {
+        profile::import(document, name)
     }
 
     fn doctor(&self) -> Value {

@@ -107,7 +107,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         audience.tell(leave);
     }
     let requests = requests(Some(runtime::socket_path(arguments.name.as_ref())), audience)?;
-    let mut prepared = arguments.shown.prepare(&requests, &selection, output.choice())?;
+    let memory = runtime::page_memory(arguments.name.as_ref());
+    let mut prepared = arguments.shown.prepare(&memory, &requests, &selection, output.choice())?;
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));
     }

@@ -34,6 +34,11 @@ pub(super) fn socket_path(name: Option<&BridgeName>) -> Result<PathBuf, Failure>
     folder().map(|folder| folder.join(file))
 }
 
+/// The state file of the addresses that the page of a bridge had, of this name if it has one.
+pub(super) fn page_memory(name: Option<&BridgeName>) -> String {
+    name.map_or_else(|| "page-addresses".to_owned(), |BridgeName(name)| format!("page-addresses-{name}"))
+}
+
 /// The user's runtime folder, else a folder of the user's own among the temporary files.
 ///
 /// # Errors

@@ -1,12 +1,13 @@
 //! Profiles as the dashboard reads and keeps them: by names alone, in the user's own folder.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::path::Path;
+use std::path::PathBuf;
 
+use super::history::verbs::{self, ListedSave};
+use super::history::{bundle, edits};
 use super::{chosen, own};
 use crate::cli::failure::Failure;
-use crate::cli::files::destination::Destination;
-use crate::cli::files::text_file;
+use crate::cli::files::{decoder_file, text_file};
 use tactpad::dashboard::host::{Overwrite, ProfileEntry, SaveError, SavedProfile, StoredProfile};
 use tactpad::pipeline::mapping::read::ReadProfile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
@@ -60,14 +61,57 @@ pub(crate) fn save(name: &str, text: &str, over: &Overwrite) -> Result<SavedProf
         }
         _ => {}
     }
-    let path = match file {
-        Some(path) => write_over(&path, text).map(|()| path),
-        None => own::write(name, text),
-    };
+    let path = edits::put(name, text);
     let path = path.map_err(|failure| SaveError::Failed(failure.sentence()))?;
     Ok(SavedProfile { version: version(text), path: path.display().to_string() })
 }
 
-fn write_over(path: &Path, text: &str) -> Result<(), Failure> {
-    Destination::of(path)?.write(text.as_bytes())
+/// The saves of a profile, the newest first.
+pub(crate) fn listed(name: &str) -> Vec<ListedSave> {
+    verbs::listed(name)
+}
+
+/// The text of a save.
+pub(crate) fn saved(name: &str, id: u64) -> Option<String> {
+    verbs::saved(name, id)
+}
+
+/// Removes a profile of the user's own.
+pub(crate) fn delete(name: &str) -> Result<(), SaveError> {
+    edits::remove(name).map(drop).map_err(refused)
+}
+
+/// Gives a profile of the user's own another name.
+pub(crate) fn rename(from: &str, to: &str) -> Result<(), SaveError> {
+    edits::rename(from, to).map(drop).map_err(refused)
+}
+
+/// The user's own decoders: their names and files.
+pub(crate) fn decoders() -> Vec<(String, PathBuf)> {
+    bundle::decoders()
+}
+
+/// A profile as a file for export, with the user's own decoder of this name if one is named.
+pub(crate) fn exported(name: &str, decoder: Option<&str>) -> Option<String> {
+    let text = stored(name)?.text;
+    let path = |wanted: &str| decoders().into_iter().find(|(name, _)| name == wanted);
+    let decoder = match decoder {
+        Some(wanted) => Some(decoder_file::whole(&path(wanted)?.1).ok()?),
+        None => None,
+    };
+    bundle::document(name, &text, decoder.as_deref()).ok()
+}
+
+/// Makes the profile of an exported file the user's own; the path of its decoder, if one is in it.
+pub(crate) fn import(document: &str, name: &str) -> Result<Option<String>, SaveError> {
+    let imported = bundle::import(document, Some(name)).map_err(refused)?;
+    Ok(imported.decoder.map(|path| path.display().to_string()))
+}
+
+/// What cannot be done as it was asked for, and what failed.
+fn refused(failure: Failure) -> SaveError {
+    match failure {
+        Failure::Unusable(why) => SaveError::Name(why),
+        failed => SaveError::Failed(failed.sentence()),
+    }
 }

@@ -1,6 +1,7 @@
-//! `tactpad profile`: list, show, check, begin, edit.
+//! `tactpad profile`: list, show, check, new, edit; history, restore, delete, rename; export, import.
 
 use std::io::Write;
+use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
@@ -9,6 +10,7 @@ use crate::cli::printing::written::stdout;
 use tactpad::pipeline::mapping::read::shipped;
 
 mod chosen;
+mod history;
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
 mod kept;
 mod list;
@@ -17,11 +19,13 @@ mod own;
 mod stored;
 mod verdict;
 
+use history::verbs;
+
 pub(crate) use chosen::{file, read};
 #[cfg(target_os = "linux")]
 pub(crate) use chosen::{is_known, known, next, read_aside};
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
-pub(super) use kept::{entries, save, stored};
+pub(super) use kept::{decoders, delete, entries, exported, import, listed, rename, save, saved, stored};
 pub(super) use stored::ProfileDestination;
 
 /// Arguments of `tactpad profile`.
@@ -75,6 +79,62 @@ enum Action {
         /// A name from `profile list`.
         name: String,
     },
+    /// The last 20 saves of a profile of your own, the newest first, with what changed.
+    #[command(after_help = "Example: tactpad profile history contra")]
+    History {
+        /// A profile of your own, also one that was deleted.
+        name: String,
+        /// Print one JSON document.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Put an earlier save of a profile of your own in its place, and print its path. What stands there is kept.
+    #[command(after_help = "Example: tactpad profile restore contra 3")]
+    Restore {
+        /// A profile of your own, also one that was deleted.
+        name: String,
+        /// The save's number in `profile history`; without it the one before the present, or the last of a deleted profile.
+        #[arg(conflicts_with = "shipped")]
+        number: Option<usize>,
+        /// As the profile of this name inside the program is.
+        #[arg(long)]
+        shipped: bool,
+    },
+    /// Remove a profile of your own; `profile restore` brings it back.
+    #[command(after_help = "Example: tactpad profile delete my-game")]
+    Delete {
+        /// A profile of your own.
+        name: String,
+    },
+    /// Give a profile of your own another name, and its history with it, and print its path.
+    #[command(after_help = "Example: tactpad profile rename my-game my-old-game")]
+    Rename {
+        /// A profile of your own.
+        name: String,
+        /// Its new name, which no profile of your own has yet.
+        to: String,
+    },
+    /// Write a profile with its name into one file, for another machine.
+    #[command(after_help = "Example: tactpad profile export contra --out contra.tactpad")]
+    Export {
+        /// A name from `profile list`.
+        name: String,
+        /// A decoder that goes along: a file that calibrate, adapt or train wrote.
+        #[arg(long, value_name = "FILE")]
+        decoder: Option<PathBuf>,
+        /// The file; - is stdout.
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
+    /// Make the profile in such a file your own, and print its path.
+    #[command(after_help = "Example: tactpad profile import contra.tactpad --name contra-of-ann")]
+    Import {
+        /// A file that `profile export` wrote; - is stdin.
+        file: PathBuf,
+        /// Another name for it.
+        #[arg(long)]
+        name: Option<String>,
+    },
     /// Print the JSON Schema of profiles, for editors and programs.
     #[command(after_help = "Example: tactpad profile schema > profile.schema.json\n\n\
         Profiles begin with the line `#:schema ./profile.schema.json`. Editors with Taplo or Even Better TOML then \
@@ -89,6 +149,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Check { profile, json } => verdict::run(profile, *json),
         Action::New { name, save } => new::new(name, *save),
         Action::Edit { name } => new::edit(name),
+        Action::History { name, json } => verbs::print(name, *json),
+        Action::Restore { name, shipped: true, .. } => verbs::restore_shipped(name),
+        Action::Restore { name, number, .. } => verbs::restore(name, *number),
+        Action::Delete { name } => verbs::delete(name),
+        Action::Rename { name, to } => verbs::rename(name, to),
+        Action::Export { name, decoder, out } => verbs::export(name, decoder.as_deref(), out),
+        Action::Import { file, name } => verbs::import(file, name.as_deref()),
         Action::Schema => Ok(stdout().write_all(shipped::schema().as_bytes())?),
     }
 }

@@ -5,6 +5,7 @@ use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::process::Command;
 
+use super::history::{edits, saves};
 use super::{chosen, own, verdict};
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{reason, say, stdout};
@@ -17,13 +18,13 @@ const TEMPLATE: &str = include_str!("template.toml");
 const TEMPLATE_NAME: &str = "name = \"My game\"";
 
 /// Prints a new profile, or writes it into the user's own folder.
-pub(super) fn new(name: &str, saves: bool) -> Result<(), Failure> {
+pub(super) fn new(name: &str, is_saved: bool) -> Result<(), Failure> {
     own::check_name(name)?;
     let text = TEMPLATE.replacen(TEMPLATE_NAME, &format!("name = \"{name}\""), 1);
-    if !saves {
+    if !is_saved {
         return Ok(stdout().write_all(text.as_bytes())?);
     }
-    let path = own::write(name, &text)?;
+    let path = edits::create(name, &text)?;
     if shipped::text(name).is_some() {
         say(format_args!("it stands before the {name} inside the program"));
     }
@@ -36,7 +37,7 @@ pub(super) fn edit(name: &str) -> Result<(), Failure> {
     let path = match (own::file(name), shipped::text(name)) {
         (Some(path), _) => path,
         (None, Some(text)) => {
-            let path = own::write(name, text)?;
+            let path = edits::create(name, text)?;
             say(format_args!("this copy stands before the {name} inside the program"));
             path
         }
@@ -54,7 +55,9 @@ pub(super) fn edit(name: &str) -> Result<(), Failure> {
         }
     };
     writeln!(stdout(), "{}", path.display())?;
+    saves::record_present(name)?;
     if io::stdin().is_terminal() && io::stdout().is_terminal() && opened(&path)? {
+        saves::record_present(name)?;
         return verdict::run(name, false);
     }
     Ok(())

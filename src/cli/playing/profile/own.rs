@@ -53,6 +53,20 @@ fn name_of(path: &Path) -> Option<String> {
     is_name(name).then(|| name.to_owned())
 }
 
+/// The name of the user's own profile that this file is, if it is one.
+pub(super) fn name_in_folder(path: &Path) -> Option<String> {
+    (path.parent()? == folder()?).then(|| name_of(path)).flatten()
+}
+
+/// The file of the user's own profile `name`, which must be there.
+pub(super) fn existing(name: &str) -> Result<PathBuf, Failure> {
+    file(name).ok_or_else(|| {
+        let own = names().join(", ");
+        let way_out = if own.is_empty() { "there are none yet".into() } else { format!("they are {own}") };
+        Failure::Unusable(format!("{name:?} is no profile of your own: {way_out}"))
+    })
+}
+
 /// Refuses a name that a new profile cannot have.
 pub(super) fn check_name(name: &str) -> Result<(), Failure> {
     let is_plain = |letter: char| letter.is_alphanumeric() || matches!(letter, '-' | '_' | ' ');

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::history::edits;
 use super::{chosen, own};
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
@@ -48,7 +49,10 @@ impl ProfileDestination {
     /// Writes the profile and says where it is.
     pub(crate) fn write(&self, text: &str) -> Result<PathBuf, Failure> {
         match self {
-            Self::Own(name) => own::write(name, text),
+            Self::Own(name) => edits::create(name, text),
+            Self::File(_, path) if own::name_in_folder(path).is_some() => {
+                edits::write_over(path, text).map(|()| path.clone())
+            }
             Self::File(to, path) => to.write(text.as_bytes()).map(|()| path.clone()),
         }
     }

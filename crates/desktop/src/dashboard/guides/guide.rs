@@ -161,6 +161,7 @@ pub(super) struct StepAction {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct NumberField {
     pub(super) label: &'static str,
+    pub(super) unit: &'static str,
     pub(super) least: f64,
     pub(super) largest: f64,
 }

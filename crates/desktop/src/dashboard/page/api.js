@@ -1,6 +1,7 @@
 // Requests to the program: the token, JSON both ways, and one kind of error.
 
 const TOKEN = "tactpad-token";
+const NO_ANSWER = "tactpad does not answer: start it again.";
 
 /** An answer that is no success; `message` is one sentence for people. */
 export class RequestError extends Error {
@@ -25,20 +26,25 @@ export function takeToken() {
 
 const token = () => sessionStorage.getItem(TOKEN) ?? "";
 
+/** Keeps the token of the program that was found again. */
+export function setToken(token) {
+  sessionStorage.setItem(TOKEN, token);
+}
+
+/** Whether whoever answers is known to be the program: nobody else is asked for anything. */
+let isConnected = true;
+
+/** Says whether requests may be sent. */
+export function setConnected(connected) {
+  isConnected = connected;
+}
+
 /** A path that a new tab can open. */
 export const withToken = (path) => `${path}?token=${encodeURIComponent(token())}`;
 
 /** The address of the live socket. */
 export function liveAddress() {
   return `ws://${location.host}/api/live?token=${encodeURIComponent(token())}`;
-}
-
-/** @type {() => void} */
-let refused = () => {};
-
-/** Says what happens when the program does not know this page's token. */
-export function onRefused(listener) {
-  refused = listener;
 }
 
 async function bodyOf(response) {
@@ -59,6 +65,7 @@ async function bodyOf(response) {
  * @param {Record<string, string>} headers
  */
 export async function request(method, path, body = null, headers = {}) {
+  if (!isConnected) throw new RequestError(0, { error: NO_ANSWER });
   const plain = typeof body === "string";
   const type = plain ? "text/plain; charset=utf-8" : "application/json";
   let response;
@@ -70,10 +77,9 @@ export async function request(method, path, body = null, headers = {}) {
       body: body === null || plain ? body : JSON.stringify(body),
     });
   } catch {
-    throw new RequestError(0, { error: "The program does not answer." });
+    throw new RequestError(0, { error: NO_ANSWER });
   }
   const answer = await bodyOf(response);
-  if (response.status === 401) refused();
   if (!response.ok) throw new RequestError(response.status, answer);
   return answer;
 }

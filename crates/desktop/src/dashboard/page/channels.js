@@ -49,6 +49,12 @@ export class Channels {
     });
   }
 
+  /** Shows none. */
+  clear() {
+    this.#numbers_ms = 0;
+    this.draw(null, null, null);
+  }
+
   /** @param {number[] | null} values_uv @param {{ channel?: string } | null} warning @param {string | null} sentence */
   draw(values_uv, warning, sentence) {
     const values = values_uv === null ? null : values_uv.slice(0, this.rows.length).map((value_uv) => value_uv * this.#per_uv);

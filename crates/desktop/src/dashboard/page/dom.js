@@ -65,20 +65,6 @@ export function row(cells) {
   return el("tr", {}, el("th", { scope: "row", text: first }), ...rest.map((text) => el("td", { text })));
 }
 
-/** A field for a number. A decimal comma is a decimal point there: the browser would drop it, and make 15 of 1,5. */
-export function numberField(attributes) {
-  const field = el("input", { type: "number", inputmode: "decimal", ...attributes });
-  const put = (event, text) => {
-    if (!text?.includes(",")) return;
-    event.preventDefault();
-    // With two separators nobody can tell which one is meant: nothing is put in.
-    if (!/[.,].*[.,]/.test(text)) document.execCommand("insertText", false, text.replace(",", "."));
-  };
-  field.addEventListener("beforeinput", (event) => put(event, event.data));
-  field.addEventListener("paste", (event) => put(event, event.clipboardData?.getData("text")));
-  return field;
-}
-
 /** A number with so many digits behind the point, with a true minus sign. */
 export function number(value, digits = 1) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";

@@ -8,7 +8,7 @@ import { History } from "./history.js";
 const place = ({ table, key }) => JSON.stringify([table, key]);
 
 /**
- * Tells by events: "text" (the text is another one, not by typing), "checked" (diagnostics, document, sketch are new),
+ * Tells by events: "text" (the text is another one, not by typing), "typed", "checked" (diagnostics, document, sketch are new),
  * "failed" (a sentence in `detail`).
  */
 export class Draft extends EventTarget {
@@ -58,6 +58,12 @@ export class Draft extends EventTarget {
   type(text, gesture) {
     this.text = text;
     this.history.record(text, gesture);
+    this.#told("typed");
+    this.#check();
+  }
+
+  /** Looks at the text once more: the program may not have answered. */
+  again() {
     this.#check();
   }
 
@@ -79,6 +85,11 @@ export class Draft extends EventTarget {
     this.#told("text");
     this.#check();
     return true;
+  }
+
+  /** Whether a change of this key is still to be made: what the draft says of it is old. @param {(string | number)[]} path */
+  waitsFor(path) {
+    return this.#waiting.has(place({ table: path.slice(0, -1), key: path.at(-1) }));
   }
 
   /** Changes values; changes of one `gesture` are one step back. @param {Change[]} changes */

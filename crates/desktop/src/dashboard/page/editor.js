@@ -9,6 +9,7 @@ import { Form } from "./form.js";
 import { Finger, Plate } from "./plate.js";
 import { PlateHandles } from "./plate_handles.js";
 import { Preview } from "./preview.js";
+import { ProfileHistory } from "./profile_history.js";
 import { Rewind } from "./rewind.js";
 import { askConflict, askDrop, askName, readProfile, writeProfile } from "./saving.js";
 import { Schema } from "./schema.js";
@@ -24,6 +25,13 @@ export class ProfileView {
   #opening = null;
   #reading = false;
   #previewed = false;
+  /** @type {import("./draft_store.js").DraftStore | null} */
+  #draftStore = null;
+  /** A draft that this browser has stored, to be opened first. @type {import("./draft_store.js").StoredDraft | null} */
+  #found = null;
+  #leaving = false;
+  /** What is to be read once the draft was checked. */
+  #told = "";
 
   constructor(section) {
     this.section = section;
@@ -33,8 +41,9 @@ export class ProfileView {
     this.body = el("div");
     section.append(this.bar, this.body);
     section.addEventListener("keydown", (event) => this.#shortcut(event));
-    addEventListener("beforeunload", (event) => this.draft.dirty && event.preventDefault());
+    addEventListener("beforeunload", (event) => this.draft.dirty && !this.#leaving && event.preventDefault());
     this.draft.addEventListener("text", () => this.text?.showText());
+    for (const change of ["text", "typed", "checked"]) this.draft.addEventListener(change, () => this.#storeDraft());
     this.draft.addEventListener("checked", () => this.#checked());
     this.draft.addEventListener("failed", ({ detail }) => this.#tell(detail));
   }
@@ -45,12 +54,12 @@ export class ProfileView {
     this.redo = button("Redo", () => this.draft.move(1), { id: "redo", class: "main", "aria-keyshortcuts": "Control+Y" });
     this.save = button("Save", () => this.#save(), { id: "save", class: "main primary", "aria-keyshortcuts": "Control+S" });
     this.revert = button("Revert", () => this.draft.replace(this.draft.saved), { id: "revert", class: "main" });
-    const live = el("input", { type: "checkbox", id: "preview", checked: true, onchange: () => this.#allowPreview(live.checked) });
+    this.live = el("input", { type: "checkbox", id: "preview", checked: true, onchange: () => this.#allowPreview(this.live.checked) });
     this.state = el("span", { id: "draft-state" });
     this.message = el("p", { class: "editor-message", role: "status" });
     this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
       el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert,
-      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), el("label", { class: "check main" }, live, "Play the draft live"), this.state, this.message));
+      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), el("label", { class: "check main" }, this.live, "Play the draft live"), this.state, this.message));
   }
 
   /** Makes what needs the schema, once. */
@@ -64,11 +73,16 @@ export class ProfileView {
     this.form = new Form(this.values, schema);
     this.text = new TextPane(this.draft);
     this.rewind = new Rewind(this.draft);
+    this.profileHistory = new ProfileHistory({
+      draft: (text, sentence) => this.#showDraft(text, sentence),
+      open: (name) => this.#reopen(name),
+      mayDrop: async () => !this.draft.dirty || await askDrop(this.#name) === true,
+    });
     const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab: arrow keys move it, Page Up and Page Down move it far, Home and End to its limits. Each has a field among the keys." });
     this.body.replaceChildren(el("div", { class: "editor-grid" },
       el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node, hint)),
       el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Keys" }), this.form.node)),
-      el("div", { class: "area-text" }, el("div", { class: "card" }, el("h3", { text: "Text" }), this.text.node), this.rewind.node)));
+      el("div", { class: "area-text" }, el("div", { class: "card" }, el("h3", { text: "Text" }), this.text.node), this.rewind.node, this.profileHistory.node)));
   }
 
   /** The view comes into sight. */
@@ -77,6 +91,7 @@ export class ProfileView {
       this.#ready ??= this.#prepare();
       await this.#ready;
       const playing = await this.#list();
+      if (this.#found !== null) await this.#openFound();
       if (this.#opening !== null) await this.#openWaiting();
       else if (this.#name === null && !this.#reading) await this.#load(playing);
     } catch (error) {
@@ -89,7 +104,27 @@ export class ProfileView {
     const { profiles, playing } = await get("/api/profiles");
     this.choice.replaceChildren(...profiles.map(({ name, own }) => el("option", { value: name, text: own ? `${name} (yours)` : name })));
     this.choice.value = this.#name ?? playing;
+    this.profiles = profiles;
     return playing;
+  }
+
+  /** Shows the history of the profile that is open. */
+  async #showHistory() {
+    const profile = this.profiles.find(({ name }) => name === this.#name);
+    if (profile !== undefined) await this.profileHistory.show(profile).catch((error) => this.#tell(error.message));
+  }
+
+  #showDraft(text, sentence) {
+    this.#told = sentence;
+    announce(sentence);
+    this.draft.replace(text);
+  }
+
+  /** Opens a profile of this name, or the one in play with null, whatever becomes of the draft; the list is another one. */
+  async #reopen(name) {
+    this.#name = name;
+    const playing = await this.#list();
+    await this.#load(name ?? playing);
   }
 
   async #open(name) {
@@ -103,12 +138,17 @@ export class ProfileView {
   async #load(name, text = undefined) {
     this.#reading = true;
     const profile = await readProfile(name).finally(() => { this.#reading = false; });
+    this.#opened(name, profile.version, profile.text, text);
+    await this.#showHistory();
+  }
+
+  #opened(name, version, saved, text) {
     this.#name = name;
-    this.#version = profile.version;
+    this.#version = version;
     this.choice.value = name;
     this.plateHandles.forget();
     this.forceHandles.forget();
-    this.draft.load(profile.text, text);
+    this.draft.load(saved, text);
   }
 
   /** Opens a draft that a guide has made; nothing else is shown before it. */
@@ -124,13 +164,63 @@ export class ProfileView {
     await this.#load(profile, text);
   }
 
+  /** Takes the store of drafts that are not saved, and the draft that it found. */
+  setDraftStore(store, found) {
+    this.#draftStore = store;
+    this.#found = found;
+    showStored(found);
+  }
+
+  #storeDraft() {
+    if (this.#name === null || this.#reading) return;
+    const { dirty, text } = this.draft;
+    this.#draftStore?.store(dirty ? { profile: this.#name, version: this.#version, text, at_ms: Date.now() } : null);
+  }
+
+  /** Opens the stored draft as it was left. It is not played: it may be why the bridge was ended. */
+  async #openFound() {
+    const { profile, version, text, at_ms } = this.#found;
+    this.#found = null;
+    showStored(null);
+    this.live.checked = false;
+    this.#allowPreview(false);
+    const saved = await readProfile(profile).catch(() => null);
+    this.#opened(profile, version, saved?.text ?? "", text);
+    const changed = saved?.version === version ? "" : " The file was changed meanwhile: Save asks before it writes.";
+    this.#told = `Your draft of ${profile} is here as you left it at ${new Date(at_ms).toLocaleTimeString()}. It is not played before you tick “Play the draft live”; Revert drops it.${changed}`;
+    announce(this.#told);
+    await this.#showHistory();
+  }
+
+  /** The bridge is there again. */
+  again() {
+    if (this.#name === null) return;
+    this.preview.again();
+    this.draft.again();
+  }
+
+  /** There is no bridge. */
+  clear() {
+    this.finger?.draw(null, null, null);
+    this.forceHandles?.forces.draw(null);
+    this.#previewed = false;
+    document.getElementById("preview-notice").replaceChildren();
+  }
+
+  /** The page goes elsewhere by itself: everything is stored, and nobody is asked. */
+  leave() {
+    this.#leaving = true;
+    return this.#draftStore?.flush();
+  }
+
   #tell(sentence) {
     say(this.message, sentence);
   }
 
   #checked() {
     const focus = document.activeElement?.closest?.("[data-handle], [data-field]");
-    this.#tell("");
+    this.#tell(this.#told);
+    this.#told = "";
     this.text.showDiagnostics();
     this.plate.setSketch(this.draft.sketch);
     this.plateHandles.refresh();
@@ -184,6 +274,7 @@ export class ProfileView {
       this.draft.markSaved(text);
       this.#tell(`Saved to ${answer.path}.`);
       await this.#list();
+      await this.#showHistory();
     } catch (error) {
       await this.#notSaved(error, name, version);
     }
@@ -221,6 +312,14 @@ export class ProfileView {
     notice.replaceChildren(...(preview ? [el("span", { text: `◐ ${sentence}` }), button("Back to the file", () => this.preview.end())] : []));
     announce(preview ? sentence : "The saved profile is played.");
   }
+}
+
+/** Says in every view that a draft is kept. */
+function showStored(found) {
+  const notice = document.getElementById("draft-notice");
+  if (found !== null) announce(`A draft of ${found.profile} that was not saved is kept.`);
+  notice.replaceChildren(...(found === null ? [] : [el("span", { text: `● A draft of ${found.profile} that was not saved is kept.` }), " ",
+    el("a", { class: "action", href: "#profile", text: "Open the draft" })]));
 }
 
 /** Gives the focus back to a handle or field that was made anew. */

@@ -42,6 +42,12 @@ export class EventLanes {
     for (const press of presses) if (press.press !== "accepted") this.#press(press);
   }
 
+  /** Shows none. */
+  clear() {
+    this.#restart();
+    this.draw();
+  }
+
   #restart() {
     this.#lanes.clear();
     this.#rejected = [];

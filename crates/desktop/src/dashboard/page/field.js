@@ -1,7 +1,8 @@
-// One key of a profile as a field: label, control, explanation, and a way back to what holds without it.
+// One key of a profile as a field: label, control, explanation, and a reset to what holds without it.
 
 import { captureButton } from "./capture.js";
-import { el, numberField, say, set } from "./dom.js";
+import { el, say, set } from "./dom.js";
+import { NumberField } from "./number_field.js";
 import { nameOf, stepOf, tidy, unitOf } from "./schema.js";
 
 const CHOICES_WITH_OWN_WORDS = new Set(["gamepad", "pointer"]);
@@ -25,14 +26,16 @@ export class Field {
    */
   constructor(path, about, values) {
     Object.assign(this, { path, about, values, id: `field-${fields++}` });
+    this.described = `${this.id}-note ${this.id}-help`;
     this.control = this.#control();
-    set(this.control, { id: this.id, "data-field": nameOf(path), "aria-describedby": `${this.id}-note ${this.id}-help` });
+    set(this.control, { id: this.id, "data-field": nameOf(path) });
     this.note = el("span", { class: "field-note quiet", id: `${this.id}-note` });
-    this.back = el("button", { type: "button", class: "back", text: "↺", title: "Write nothing", "aria-label": `Do not write ${about.key}`, onclick: () => this.#write(null) });
+    this.back = el("button", { type: "button", class: "back", text: "↺", title: "Write nothing", "aria-label": `Do not write ${about.key}`, onclick: () => this.#unwrite() });
     const unit = unitOf(about.key);
     this.node = el("div", { class: `field ${about.kind}` },
       el("label", { for: this.id, text: about.key }),
-      el("div", { class: "field-controls" }, this.control, unit === "" ? null : el("span", { class: "quiet", text: unit, "aria-hidden": "true" }), ...this.#extras(), this.back, this.note),
+      el("div", { class: "field-controls" }, this.control, unit === "" ? null : el("span", { class: "quiet", text: unit, "aria-hidden": "true" }), ...this.#extras(), this.back, this.note, this.number?.range),
+      this.number?.error,
       el("p", { class: "help", id: `${this.id}-help`, text: about.help }));
     this.refresh();
   }
@@ -44,9 +47,10 @@ export class Field {
   #control() {
     const { kind } = this.about;
     if (kind === "choice") return this.#select();
-    if (kind === "boolean") return el("input", { type: "checkbox", onchange: (event) => this.#write(event.target.checked) });
-    if (this.#numeric) return this.#number("number");
-    return el("input", { type: "text", autocomplete: "off", spellcheck: "false", list: this.#list(), onchange: (event) => this.#write(event.target.value === "" ? null : event.target.value) });
+    if (this.#numeric) return this.#number().node;
+    const described = { "aria-describedby": this.described };
+    if (kind === "boolean") return el("input", { type: "checkbox", ...described, onchange: (event) => this.#write(event.target.checked) });
+    return el("input", { type: "text", autocomplete: "off", spellcheck: "false", list: this.#list(), ...described, onchange: (event) => this.#write(event.target.value === "" ? null : event.target.value) });
   }
 
   #list() {
@@ -56,44 +60,57 @@ export class Field {
   #select() {
     const { required, options, default: fallback } = this.about;
     const none = required ? [] : [el("option", { value: "", text: fallback === undefined ? "not written" : `not written: ${fallback}` })];
-    return el("select", { onchange: (event) => this.#write(event.target.value === "" ? null : event.target.value) },
+    return el("select", { "aria-describedby": this.described, onchange: (event) => this.#write(event.target.value === "" ? null : event.target.value) },
       ...none, ...options.map((option) => el("option", { value: option, text: option })));
   }
 
-  #number(type) {
-    const { kind, min, max } = this.about;
-    const make = type === "number" ? numberField : (attributes) => el("input", { type, ...attributes });
-    const node = make({ min, max, step: kind === "integer" ? 1 : "any", oninput: () => this.#typed(node),
-      onblur: () => { this.#gesture = null; }, onkeydown: (event) => this.#stepped(event, node) });
-    return node;
+  #number() {
+    const { key, kind, required } = this.about;
+    this.number = new NumberField({
+      unit: unitOf(key),
+      whole: kind === "integer",
+      step: stepOf(key, kind),
+      limits: () => this.values.limits(this.path),
+      blank: required ? "" : ", or ↺ to write none",
+      start: () => this.values.at(this.path) ?? this.about.min ?? 0,
+      take: (value) => this.#typed(value),
+    }, { "aria-describedby": this.described, onfocusout: () => { this.#gesture = null; } });
+    return this.number;
+  }
+
+  /** What is typed or slid without a pause is one step back. */
+  #typed(value) {
+    this.#gesture ??= {};
+    this.#write(value);
+  }
+
+  #makeSlider() {
+    const { key, kind, min, max } = this.about;
+    return el("input", { type: "range", min, max, step: kind === "integer" ? 1 : "any", "aria-label": `${nameOf(this.path)}, slider`,
+      oninput: ({ target }) => this.#typed(Number(target.value)), onblur: () => { this.#gesture = null; }, onkeydown: (event) => this.#slide(event, stepOf(key, kind)) });
   }
 
   /** Arrow keys step by what suits the key, as the handle does. */
-  #stepped(event, node) {
-    const sideways = node.type === "range" ? { ArrowRight: 1, ArrowLeft: -1 } : {};
-    const by = { ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10, ...sideways }[event.key];
+  #slide(event, step) {
+    const by = { ArrowUp: 1, ArrowDown: -1, ArrowRight: 1, ArrowLeft: -1, PageUp: 10, PageDown: -10 }[event.key];
     if (by === undefined) return;
     event.preventDefault();
-    const { key, kind, min = -Infinity, max = Infinity } = this.about;
-    const value = Number(node.value === "" ? this.values.at(this.path) ?? 0 : node.value) + by * stepOf(key, kind);
-    node.value = String(tidy(Math.min(Math.max(value, min), max)));
-    this.#typed(node);
-  }
-
-  #typed(node) {
-    if (node.value === "" && node.validity.badInput) return;
-    if (node.value === "" && this.about.required) return;
-    this.#gesture ??= {};
-    this.#write(node.value === "" ? null : Number(node.value));
+    const { min, max } = this.about;
+    this.#typed(tidy(Math.min(Math.max(Number(this.slider.value) + by * step, min), max)));
   }
 
   #extras() {
     const { key, kind } = this.about;
     if (kind === "keyboard" || kind === "gamepad") return [captureButton(kind, nameOf(this.path), (names) => this.#write(names))];
     if (!this.#numeric || unitOf(key) !== "ms") return [];
-    this.slider = this.#number("range");
-    set(this.slider, { "aria-label": `${nameOf(this.path)}, slider` });
+    this.slider = this.#makeSlider();
     return [this.slider];
+  }
+
+  /** The button goes with what it took away, and the focus stays at the field. */
+  #unwrite() {
+    this.#write(null);
+    this.control.focus();
   }
 
   #write(value) {
@@ -102,18 +119,19 @@ export class Field {
 
   /** Shows the draft's value, but not over what is being typed. */
   refresh() {
+    if (this.values.draft.waitsFor(this.path)) return;
     const value = this.values.at(this.path);
     const written = this.values.isWritten(this.path);
     this.back.hidden = !written || this.about.required;
     this.node.classList.toggle("unwritten", !written);
     say(this.note, written ? "" : `not written: ${shown(value)}`);
     if (this.about.kind === "boolean") this.control.checked = value === true;
+    else if (this.#numeric) this.number.show(written ? value : "");
     else this.#fill(this.control, written ? value : "");
     if (this.slider !== undefined) this.#fill(this.slider, value ?? this.about.min);
   }
 
   #fill(node, value) {
-    const busy = node === document.activeElement && this.#numeric && node.type === "number" && node.value !== "" && Number(node.value) === value;
-    if (!busy && node.value !== String(value)) node.value = String(value);
+    if (node.value !== String(value)) node.value = String(value);
   }
 }

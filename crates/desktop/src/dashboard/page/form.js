@@ -1,5 +1,6 @@
 // The form of all keys of a profile, made from the JSON Schema and the draft's document.
 
+import { announce } from "./announce.js";
 import { button, el, say } from "./dom.js";
 import { Field } from "./field.js";
 import { nameOf } from "./schema.js";
@@ -20,6 +21,8 @@ export class Form {
   #shape = "";
   /** What a person opened and closed, by its name. @type {Map<string, boolean>} */
   #opened = new Map();
+  /** Where the focus goes once what was asked for is there: the first of these that there is. @type {string[]} */
+  #goTo = [];
 
   /** @param {import("./values.js").Values} values @param {import("./schema.js").Schema} schema */
   constructor(values, schema) {
@@ -48,6 +51,22 @@ export class Form {
     const shape = shapeOf(document);
     if (shape !== this.#shape) this.#make(document, shape);
     for (const field of this.#fields) field.refresh();
+    this.#follow();
+  }
+
+  /** Adds or removes something by `change`; says so, and the focus follows. */
+  #apply(sentence, goTo, change) {
+    this.#goTo = goTo;
+    change();
+    announce(sentence);
+  }
+
+  #follow() {
+    const node = this.#goTo.map((selector) => this.node.querySelector(selector)).find((found) => found !== null);
+    if (this.#goTo.length === 0) return;
+    this.#goTo = [];
+    for (let fold = node?.parentElement.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+    node?.focus();
   }
 
   #make(document, shape) {
@@ -57,16 +76,24 @@ export class Form {
     for (const table of Object.keys(this.schema.json.properties)) {
       const value = document[table];
       if (value === undefined || typeof value !== "object") continue;
-      if (!Array.isArray(value)) groups.push(this.#group(table, TITLES[table] ?? table, [table], value, () => this.#remove(table, 0)));
-      else value.forEach((one, index) => groups.push(this.#group(nameOf([table, index]), titleOf(table, index, one), [table, index], one, () => this.#remove(table, index))));
+      if (!Array.isArray(value)) groups.push(this.#group(table, TITLES[table] ?? table, [table], value, (title) => this.#remove(table, 0, title)));
+      else value.forEach((one, index) => groups.push(this.#group(nameOf([table, index]), titleOf(table, index, one), [table, index], one, (title) => this.#remove(table, index, title))));
     }
     this.groups.replaceChildren(...groups);
     const missing = Object.entries(TABLES).filter(([table, { many }]) => many || document[table] === undefined);
-    this.adders.replaceChildren(...missing.map(([table, { name }]) => button(`+ ${name}`, () => this.#draft.replace(withTable(this.#draft.text, table)), { "data-add": table })));
+    this.adders.replaceChildren(...missing.map(([table, { name }]) => button(`+ ${name}`, () => this.#add(table, name), { "data-add": table })));
   }
 
-  #remove(table, index) {
-    this.#draft.replace(withoutTable(this.#draft.text, table, index));
+  #add(table, name) {
+    const path = TABLES[table].many ? [table, tablesOf(this.#draft.document, table).length] : [table];
+    this.#apply(`Added: ${name}.`, [`[data-group="${nameOf(path)}"] [data-field]`, `[data-group="${nameOf(path)}"] summary`],
+      () => this.#draft.replace(withTable(this.#draft.text, table)));
+  }
+
+  /** The one that follows takes its place; else the one before, else what adds one. */
+  #remove(table, index, title) {
+    const neighbours = [index, index - 1].map((at) => `[data-group="${nameOf([table, at])}"] > summary`);
+    this.#apply(`Removed: ${title}.`, [...neighbours, `[data-add="${table}"]`], () => this.#draft.replace(withoutTable(this.#draft.text, table, index)));
   }
 
   /** A table's keys; those that are not written and seldom wanted are folded away. */
@@ -79,13 +106,13 @@ export class Form {
       ...seen.map((about) => this.#field(path, about)),
       ...this.#inner(path, value, keys),
       this.#folded(`${name} more`, `Keys that are not written (${folded.length})`, path, folded),
-      remove === null ? null : button(`Remove ${title}`, remove, { class: "remove" }),
+      remove === null ? null : button(`Remove ${title}`, () => remove(title), { class: "remove" }),
     ]);
   }
 
   /** Something to open and close; it stays as it is when fields are made anew. */
   #fold(name, kind, title, open, children) {
-    const node = el("details", { class: kind, open: this.#opened.get(name) ?? open }, el("summary", {}, title), ...children);
+    const node = el("details", { class: kind, "data-group": name, open: this.#opened.get(name) ?? open }, el("summary", {}, title), ...children);
     node.addEventListener("toggle", () => this.#opened.set(name, node.open));
     return node;
   }
@@ -113,18 +140,28 @@ export class Form {
     const keys = this.schema.keys(path);
     const seen = keys.filter(({ key }) => value[key] !== undefined);
     const folded = keys.filter((about) => !seen.includes(about));
-    return el("fieldset", { class: "part" }, el("legend", { text: title }), ...seen.map((about) => this.#field(path, about)),
+    return el("fieldset", { class: "part", "data-part": nameOf(path) }, el("legend", { text: title }), ...seen.map((about) => this.#field(path, about)),
       this.#folded(nameOf(path), `More for ${title} (${folded.length})`, path, folded),
       remove === null ? null : button(`Remove ${title}`, remove, { class: "remove" }));
   }
 
   #effects(path, value) {
     const present = EFFECTS.filter((effect) => value[effect] !== undefined);
-    const parts = present.map((effect) => this.#part([...path, effect], effect, () => this.values.write([...path, effect], null)));
+    const parts = present.map((effect) => this.#part([...path, effect], effect, () => this.#removeEffect(path, effect)));
     const fitting = present.length === 0 ? ["out", "tap"] : { out: [], tap: ["double", "hold"], light: ["hard"] }[present[0]] ?? [];
     const adders = fitting.filter((effect) => !present.includes(effect))
-      .map((effect) => button(`+ ${effect}`, () => this.#draft.replace(withEffect(this.#draft.text, path[1], effect, value.press_n)), { "aria-label": `+ ${effect} of button ${path[1] + 1}` }));
+      .map((effect) => button(`+ ${effect}`, () => this.#addEffect(path, effect, value.press_n), { "aria-label": `+ ${effect} of button ${path[1] + 1}` }));
     return adders.length === 0 ? parts : [...parts, el("div", { class: "commands" }, ...adders)];
+  }
+
+  #addEffect(path, effect, press_n) {
+    this.#apply(`Added: ${effect}.`, [`[data-part="${nameOf([...path, effect])}"] [data-field]`],
+      () => this.#draft.replace(withEffect(this.#draft.text, path[1], effect, press_n)));
+  }
+
+  #removeEffect(path, effect) {
+    const others = EFFECTS.filter((other) => other !== effect).map((other) => `[data-part="${nameOf([...path, other])}"] [data-field]`);
+    this.#apply(`Removed: ${effect}.`, [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.values.write([...path, effect], null));
   }
 
   #bindings(path, device) {

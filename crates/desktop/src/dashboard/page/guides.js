@@ -3,7 +3,8 @@
 import { announce } from "./announce.js";
 import { get, post, withToken } from "./api.js";
 import { commandLine } from "./command.js";
-import { button, el, number, numberField, row, say, scroller, table } from "./dom.js";
+import { button, el, number, row, say, scroller, table } from "./dom.js";
+import { NumberField } from "./number_field.js";
 
 const STEPS = {
   todo: { sign: "○", word: "to do" },
@@ -34,6 +35,14 @@ export class GuidesView {
     } catch (error) {
       say(this.about, error.message);
     }
+  }
+
+  /** Shows none: whatever ran has ended with its bridge. */
+  clear() {
+    this.#cards.clear();
+    this.list.replaceChildren();
+    say(this.failed, "");
+    say(this.about, "Guides need a bridge.");
   }
 
   /** Shows a guide as it is now. */
@@ -110,10 +119,13 @@ class GuideCard {
   /** A button; where the action takes a number, the field stands before it. */
   #action({ do: name, label, number: asked }) {
     if (asked === null) return button(label, () => this.view.act(this.id, name));
-    const field = numberField({ min: asked.least, max: asked.largest, step: "any" });
-    const choose = () => this.view.act(this.id, name, field.value === "" ? null : field.valueAsNumber);
-    field.addEventListener("keydown", ({ key }) => key === "Enter" && choose());
-    return el("div", { class: "commands" }, el("label", { class: "chooser" }, `${asked.label} (${asked.least} to ${asked.largest})`, field), button(label, choose));
+    const { least: min, largest: max } = asked;
+    const choose = () => {
+      const value = field.read();
+      if (value !== null) this.view.act(this.id, name, value);
+    };
+    const field = new NumberField({ unit: asked.unit, whole: false, step: 1, limits: () => ({ min, max }), blank: "", start: () => min, take: () => {}, enter: choose });
+    return el("div", { class: "asked" }, el("div", { class: "commands" }, el("label", { class: "chooser" }, asked.label, field.node), button(label, choose)), field.range, field.error);
   }
 
   #feedback({ progress, detail, cue, state }, part) {

@@ -35,6 +35,11 @@ class Readout {
     for (const { key, line } of this.rows) line.hidden = !has_shear && (key === "fx_n" || key === "fy_n");
   }
 
+  clear() {
+    this.#last_ms = 0;
+    this.draw(null, null);
+  }
+
   draw(contact, uncertainty) {
     const now = performance.now();
     if (now - this.#last_ms < FIGURES_MS) return;
@@ -109,6 +114,7 @@ export class LiveView {
 
   /** Draws the last frame. */
   draw() {
+    if (this.frame === undefined) return;
     const { contact, uncertainty, channels_uv, held } = this.frame;
     this.finger.draw(contact, uncertainty, this.trace);
     this.forces.draw(contact);
@@ -124,6 +130,24 @@ export class LiveView {
     const age_ms = ages.p95();
     const missed = this.frame?.missed ? `, ${this.frame.missed} missed` : "";
     say(this.freshness, `${ages.perSecond()} updates per second; picture ${age_ms === null ? "–" : number(age_ms, 1)} ms old (p95)${missed}`);
+  }
+
+  /** Shows nothing: there is no bridge. */
+  clear() {
+    this.frame = undefined;
+    this.message = undefined;
+    say(this.title, "");
+    this.plate.setSketch(null);
+    this.forces.setSketch(null);
+    this.finger.draw(null, null, this.trace);
+    this.forces.draw(null);
+    this.readout.clear();
+    this.#drawHeld([]);
+    this.lanes.clear();
+    this.channels.clear();
+    this.latency.draw({});
+    say(this.freshness, "no updates");
+    this.status.clear();
   }
 
   #drawHeld(held) {

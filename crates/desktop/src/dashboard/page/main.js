@@ -1,30 +1,30 @@
-// Starts the page: token, settings, views, the live socket, and the notices at the top.
+// Starts the page: the way in, settings, views, the live socket, and the notices at the top.
 
-import { onRefused, takeToken } from "./api.js";
+import { announce } from "./announce.js";
+import { setToken, takeToken } from "./api.js";
 import { say } from "./dom.js";
+import { DraftStore, takeAsFragment } from "./draft_store.js";
 import { LiveView } from "./live.js";
+import { fetchKeys, handshake } from "./handshake.js";
 import { ProfileView } from "./editor.js";
 import { GuidesView } from "./guides.js";
 import { ReportsView } from "./reports.js";
 import { DoctorView } from "./doctor.js";
-import { onShow, startRouter } from "./router.js";
+import { onShow, shown, startRouter } from "./router.js";
 import { Screen } from "./screen.js";
 import { startSettings } from "./settings.js";
 import { Live } from "./socket.js";
 import { Trace } from "./trace.js";
 
-const NO_TOKEN = "This page needs its token: open it from the tray, or with `tactpad ctl dashboard`";
+const NO_WAY_IN = "This page does not find its bridge: open it from the tray, or with `tactpad ctl dashboard`.";
+const LOST = "tactpad has ended, or it stands still. Start it again as you did before: this page goes on by itself, and a draft is kept.";
+const SHUT = "tactpad is there, and lets no further page in: close another one.";
 
 const live = new Live();
 const screen = new Screen();
 const trace = new Trace();
 const section = (view) => document.getElementById(view);
 const connection = section("connection");
-
-function refuse() {
-  live.stop();
-  say(connection, NO_TOKEN);
-}
 
 function makeViews() {
   const views = { live: new LiveView(section("live"), trace) };
@@ -63,24 +63,65 @@ function followStatus(views) {
 
 function followConnection(views) {
   live.on("open", () => {
+    const wasLost = connection.textContent !== "";
     say(connection, "");
     views.live.status.listProfiles();
-    views.profile.preview.again();
+    if (!wasLost) return;
+    announce("tactpad is there again.");
+    views.guides.show();
+    views.profile.again();
   });
-  live.on("lost", () => {
-    if (connection.textContent !== NO_TOKEN) say(connection, "The connection to tactpad is lost. Trying again every second …");
-  });
+  live.on("lost", () => clear(views, LOST));
+  live.on("shut", () => clear(views, SHUT));
+  live.on("moved", (origin) => move(views, origin));
 }
 
-function start() {
-  const token = takeToken();
+/** Nothing is shown that may no longer be so. */
+function clear(views, sentence) {
+  if (connection.textContent === sentence) return;
+  say(connection, sentence);
+  for (const notice of ["warning", "failure"]) say(section(notice), "");
+  trace.clear();
+  views.live.clear();
+  views.guides.clear();
+  views.profile.clear();
+}
+
+/** Goes to where the page is now, with the drafts that are stored here. */
+async function move(views, origin) {
+  await views?.profile.leave();
+  location.replace(`${origin}/#${shown()}${await takeAsFragment()}`);
+  return new Promise(() => {});
+}
+
+/** Gets the key for drafts: with the token, else by a handshake, which may lead elsewhere. Null is no way in. */
+async function enter() {
+  try {
+    return await fetchKeys();
+  } catch (error) {
+    if (error.status !== 401) throw error;
+  }
+  const answer = await handshake({ isFresh: true });
+  if (answer === null) return null;
+  if (answer.origin !== location.origin) return move(null, answer.origin);
+  setToken(answer.token);
+  return fetchKeys();
+}
+
+async function start() {
+  takeToken();
   startSettings();
-  onRefused(refuse);
   const views = makeViews();
   onShow("live", () => views.live.status.listProfiles());
   for (const view of ["profile", "guides", "reports", "doctor"]) onShow(view, () => views[view].show());
+  const key = await enter().catch((error) => say(connection, error.message));
+  if (!key) {
+    if (connection.textContent === "") say(connection, NO_WAY_IN);
+    return startRouter();
+  }
+  const { store, found } = await DraftStore.open(key).catch(() => ({ store: null, found: null }));
+  views.profile.setDraftStore(store, found);
   startRouter();
-  if (token === null) return refuse();
   followFrames(views);
   followStatus(views);
   followConnection(views);

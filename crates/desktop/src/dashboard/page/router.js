@@ -4,7 +4,10 @@ const VIEWS = { live: "Live", profile: "Profile", guides: "Guides", reports: "Re
 const listeners = [];
 
 /** The view that is shown. */
-export const shown = () => (location.hash.slice(1) in VIEWS ? location.hash.slice(1) : "live");
+export const shown = () => {
+  const [view] = location.hash.slice(1).split("&");
+  return view in VIEWS ? view : "live";
+};
 
 /** Calls `listener` when this view comes into sight. */
 export function onShow(view, listener) {

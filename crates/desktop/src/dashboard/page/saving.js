@@ -30,6 +30,12 @@ function ask(title, body, answers) {
     dialog.append(el("h3", { text: title }), body, el("div", { class: "commands" },
       ...answers.map(({ label, answer }) => button(label, () => close(answer()), { class: answers.length === 1 ? "main primary" : "main" })),
       button("Cancel", () => close(null), { class: "main" })));
+    // Enter in a field does what the first button does.
+    dialog.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" || event.target.tagName !== "INPUT") return;
+      event.preventDefault();
+      close(answers[0].answer());
+    });
     dialog.addEventListener("cancel", (event) => {
       event.preventDefault();
       close(null);
@@ -53,12 +59,12 @@ export function askDrop(name) {
 }
 
 /** A new name, or null. */
-export async function askName(before) {
+export async function askName(before, title = "Save as …") {
   const field = el("input", { type: "text", id: "new-name", value: before, class: "main" });
   const wrong = el("p", { class: "bad", role: "alert" });
   const body = el("div", {}, el("label", { for: "new-name", text: "Name, without a dot, slash, backslash or colon" }), el("p", {}, field), wrong);
   for (;;) {
-    const name = await ask("Save as …", body, [{ label: "Save", answer: () => field.value.trim() }]);
+    const name = await ask(title, body, [{ label: title.replace(" …", ""), answer: () => field.value.trim() }]);
     if (name === null || NAME.test(name)) return name;
     say(wrong, "✕ A name has no dot, slash, backslash or colon, and is not empty.");
   }

@@ -29,6 +29,11 @@ export class Schema {
     return node;
   }
 
+  /** Whether there is such a key. @param {Path} path */
+  has(path) {
+    return this.at(path) !== undefined;
+  }
+
   /** The keys of a table with what the schema says of each. @param {Path} path */
   keys(path) {
     const table = this.at(path);

@@ -1,33 +1,31 @@
-// The live socket: one listener list per kind of message, a ping each second, and a new try each second after a loss.
+// The live socket: one listener list per kind of message, a ping each second, and after a loss a handshake each second until the program is there.
 
-import { get, liveAddress } from "./api.js";
+import { liveAddress, setConnected, setToken } from "./api.js";
 import { FrameAges, HostClock } from "./clock.js";
+import { handshake } from "./handshake.js";
 
 const AGAIN_MS = 1000;
 const PING_MS = 1000;
+/** So many pings without a message, which come four times as often: the program stands still. Counting pings lets a machine sleep. */
+const SILENT_PINGS = 4;
 
 export class Live {
   /** @type {Map<string, ((message: any) => void)[]>} */
   #listeners = new Map();
   #socket = null;
   #clock = new HostClock();
-  #stopped = false;
+  #silentPings = 0;
+  #heard = false;
   ages = new FrameAges();
 
-  /** Calls `listener` with each message of this kind; "open" and "lost" are told, too. */
+  /** Calls `listener` with each message of this kind; "open", "lost", "shut" (it is there, and lets no page in) and "moved" are told, too. */
   on(kind, listener) {
     this.#listeners.set(kind, [...(this.#listeners.get(kind) ?? []), listener]);
   }
 
   start() {
-    setInterval(() => this.#ping(), PING_MS);
+    setInterval(() => this.#tick(), PING_MS);
     this.#open();
-  }
-
-  /** No further tries: the token is not known. */
-  stop() {
-    this.#stopped = true;
-    this.#socket?.close();
   }
 
   #tell(kind, message) {
@@ -35,26 +33,56 @@ export class Live {
   }
 
   #open() {
-    if (this.#stopped) return;
     const socket = new WebSocket(liveAddress());
     this.#socket = socket;
-    socket.addEventListener("open", () => this.#opened());
-    socket.addEventListener("message", (event) => this.#take(JSON.parse(event.data)));
-    socket.addEventListener("close", () => this.#lost());
+    this.#heard = false;
+    this.#silentPings = 0;
+    socket.addEventListener("open", () => this.#opened(socket));
+    socket.addEventListener("message", (event) => socket === this.#socket && this.#take(JSON.parse(event.data)));
+    socket.addEventListener("close", () => this.#lost(socket));
   }
 
-  #opened() {
+  #opened(socket) {
+    if (socket !== this.#socket) return;
+    this.#heard = true;
     this.#clock.reset();
     this.#ping();
     this.#tell("open", null);
   }
 
-  #lost() {
-    this.#tell("lost", null);
-    if (this.#stopped) return;
-    // A socket does not say why it was refused; a request does.
-    get("/api/status").catch(() => {});
-    setTimeout(() => this.#open(), AGAIN_MS);
+  /** Nothing is asked any more before the program has proven itself. */
+  #lost(socket) {
+    if (socket !== this.#socket) return;
+    this.#socket = null;
+    setConnected(false);
+    this.#tell(this.#heard ? "lost" : "shut", null);
+    setTimeout(() => this.#seek(), AGAIN_MS);
+  }
+
+  /** Tries the handshake each second, until it is the program that answers. */
+  async #seek() {
+    const answer = await handshake({ isFresh: false });
+    if (answer === null) {
+      this.#tell("lost", null);
+      setTimeout(() => this.#seek(), AGAIN_MS);
+    } else if (answer.origin !== location.origin) {
+      this.#tell("moved", answer.origin);
+    } else {
+      setToken(answer.token);
+      setConnected(true);
+      this.#open();
+    }
+  }
+
+  #tick() {
+    if (this.#socket?.readyState !== WebSocket.OPEN) return;
+    this.#silentPings += 1;
+    if (this.#silentPings > SILENT_PINGS) {
+      const silent = this.#socket;
+      // A program that stands still does not close its end.
+      silent.close();
+      this.#lost(silent);
+    } else this.#ping();
   }
 
   #ping() {
@@ -62,6 +90,7 @@ export class Live {
   }
 
   #take(message) {
+    this.#silentPings = 0;
     if (message.kind === "pong") this.#clock.pong(message);
     if (message.kind === "frame") {
       this.ages.take(this.#clock.ageMs(message.host_us));

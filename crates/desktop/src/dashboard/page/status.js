@@ -66,7 +66,8 @@ export class Status {
       this.choice.replaceChildren(...profiles.map(({ name, own }) => el("option", { value: name, text: own ? `${name} (yours)` : name })));
       this.choice.value = playing;
     } catch (error) {
-      failure(error.message);
+      // That there is no answer is told already.
+      if (error.status !== 0) failure(error.message);
     }
   }
 
@@ -92,6 +93,19 @@ export class Status {
     this.error.hidden = !status.profile_error;
     say(this.error, status.profile_error ? `✕ ${status.profile_error}` : "");
     this.#count(status);
+  }
+
+  /** Nothing is known any more. */
+  clear() {
+    this.#state = null;
+    say(this.sign, "✕");
+    say(this.word, "not connected");
+    say(this.sentence, "");
+    this.sign.parentElement.className = "state bad";
+    for (const node of this.lines.values()) say(node, "–");
+    say(this.pause, "Pause");
+    this.error.hidden = true;
+    this.countersBody.replaceChildren();
   }
 
   #changed({ state, sentence }) {

@@ -19,6 +19,11 @@ export class Trace {
     }
   }
 
+  /** Forgets everything. */
+  clear() {
+    this.#points = [];
+  }
+
   /** Forgets what is older than a second at this time. */
   forget(t_us) {
     let old = 0;

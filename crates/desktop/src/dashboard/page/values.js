@@ -52,7 +52,8 @@ export class Values {
   limits(path) {
     const { min = -1000, max = 1000 } = this.schema.describe(path);
     const key = path.at(-1);
-    const beside = (name) => this.at([...path.slice(0, -1), name]);
+    // Not every table that has the one key has the other.
+    const beside = (name) => (this.schema.has([...path.slice(0, -1), name]) ? this.at([...path.slice(0, -1), name]) : NaN);
     const gap = 0.05;
     const apart = 0.5;
     const upper = {

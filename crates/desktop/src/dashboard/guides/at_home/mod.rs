@@ -230,6 +230,34 @@ mod tests {
             Err(SaveError::Failed("nothing is kept".into()))
         }
 
+        fn history(&self, _name: &str) -> Value {
+            Value::Null
+        }
+
+        fn saved(&self, _name: &str, _id: u64) -> Option<String> {
+            None
+        }
+
+        fn delete(&self, _name: &str) -> Result<(), SaveError> {
+            Err(SaveError::Failed("nothing is kept".into()))
+        }
+
+        fn rename(&self, _from: &str, _to: &str) -> Result<(), SaveError> {
+            Err(SaveError::Failed("nothing is kept".into()))
+        }
+
+        fn decoders(&self) -> Vec<String> {
+            Vec::new()
+        }
+
+        fn exported(&self, _name: &str, _decoder: Option<&str>) -> Option<String> {
+            None
+        }
+
+        fn import(&self, _document: &str, _name: &str) -> Result<Option<String>, SaveError> {
+            Err(SaveError::Failed("nothing is kept".into()))
+        }
+
         fn doctor(&self) -> Value {
             Value::Null
         }

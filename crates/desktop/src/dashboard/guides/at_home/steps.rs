@@ -106,7 +106,7 @@ fn prepare(step: &mut PageStep, choice: &SessionOptions) {
     };
     step.detail = Some(format!("Without a weight {WITHOUT_WEIGHT}.{earlier}"));
     let [least, largest] = GRAMS;
-    let number = Some(NumberField { label: "Weight in grams", least, largest });
+    let number = Some(NumberField { label: "Weight in grams", unit: "g", least, largest });
     step.actions = vec![
         StepAction { name: WEIGHT, label: "Begin with this weight", number },
         StepAction { name: NO_WEIGHT, label: "Begin without a weight", number: None },

@@ -1,0 +1,144 @@
+//! The history of profiles on the page; profiles are renamed, deleted and brought back, exported and imported.
+
+use std::fs;
+
+use crate::browser::{Browser, ENTER};
+use crate::finger::Finger;
+use crate::running::comes_true;
+use crate::shown::Shown;
+
+fn editor(shown: &Shown) -> Option<Browser> {
+    let browser = Browser::open(&shown.url)?;
+    shown.wait_until_playing();
+    browser.view("profile");
+    browser.wait("document.querySelector('.history li')");
+    Some(browser)
+}
+
+/// Saves the profile with another threshold, as somebody who types does.
+fn save(shown: &Shown, browser: &Browser, name: &str, press_n: &str) {
+    browser.run(&format!(
+        "const area = document.getElementById('profile-text'); \
+         area.value = area.value.replace(/^press_n = .*$/m, 'press_n = {press_n}'); \
+         area.dispatchEvent(new Event('input', {{ bubbles: true }}))"
+    ));
+    browser.wait("document.getElementById('draft-state').textContent === '● not saved'");
+    browser.run("document.getElementById('save').click()");
+    let is_saved = || text(shown, name).is_some_and(|text| text.contains(&format!("press_n = {press_n}\n")));
+    assert!(comes_true(is_saved));
+    browser.wait("document.getElementById('draft-state').textContent === '✓ saved'");
+}
+
+fn text(shown: &Shown, name: &str) -> Option<String> {
+    fs::read_to_string(shown.profile(name)).ok()
+}
+
+fn history(browser: &Browser) -> String {
+    browser.run("return document.querySelector('.history').innerText").as_str().unwrap().to_owned()
+}
+
+/// Opens a row of the history by its number from the top.
+fn open(browser: &Browser, row: usize) {
+    browser.run(&format!("document.querySelectorAll('.history button')[{row}].click()"));
+    browser.wait("document.getElementById('draft-state').textContent === '● not saved'");
+}
+
+/// Answers a dialog that asks for a name.
+fn name(browser: &Browser, name: &str) {
+    browser.wait("document.activeElement.id === 'new-name'");
+    browser.run(&format!("document.activeElement.value = '{name}'"));
+    browser.keys(&[], &[ENTER]);
+    browser.wait(&format!("document.getElementById('profile-open').value === '{name}'"));
+}
+
+#[test]
+fn an_earlier_save_and_the_shipped_profile_come_back_as_drafts() {
+    let finger = Finger::start();
+    let shown = Shown::start(&finger.address(), "contra");
+    let Some(browser) = editor(&shown) else { return };
+    assert!(history(&browser).contains("None yet"));
+    save(&shown, &browser, "contra", "2.5");
+    save(&shown, &browser, "contra", "2.75");
+    browser.wait("document.querySelectorAll('.history li').length === 3");
+    let told = history(&browser);
+    assert!(told.contains("as it is now: button 1 press_n from 2.5 N to 2.75 N"), "{told}");
+    assert!(told.contains("button 1 press_n from 2 N to 2.5 N"), "{told}");
+    open(&browser, 1);
+    let shows = |press_n: &str| {
+        browser.wait(&format!(
+            "document.getElementById('profile-text').value.includes('press_n = {press_n}\\n')"
+        ));
+    };
+    shows("2.5");
+    assert!(comes_true(|| shown.status()["preview"] == true), "it is tried before it is kept");
+    browser.run("document.getElementById('undo').click()");
+    shows("2.75");
+    open(&browser, 2);
+    shows("2.0");
+    browser.run("document.getElementById('save').click()");
+    assert!(comes_true(|| text(&shown, "contra").is_some_and(|text| text.contains("press_n = 2.0\n"))));
+    browser.wait("document.querySelectorAll('.history li').length === 4");
+}
+
+#[test]
+fn a_profile_is_duplicated_renamed_deleted_and_brought_back() {
+    let finger = Finger::start();
+    let shown = Shown::start(&finger.address(), "contra");
+    let Some(browser) = editor(&shown) else { return };
+    assert_eq!(browser.run("return document.getElementById('delete').disabled"), true);
+    browser.click("#duplicate");
+    name(&browser, "mine");
+    save(&shown, &browser, "mine", "2.5");
+    browser.click("#rename");
+    name(&browser, "yours");
+    assert!(comes_true(|| text(&shown, "mine").is_none()));
+    browser.wait("document.querySelectorAll('.history li').length === 2");
+    let kept = text(&shown, "yours").unwrap();
+    browser.click("#delete");
+    browser.wait("document.activeElement.id === 'undelete'");
+    assert_eq!(text(&shown, "yours"), None);
+    browser.keys(&[], &[ENTER]);
+    browser.wait("document.getElementById('profile-open').value === 'yours'");
+    assert_eq!(text(&shown, "yours").unwrap(), kept);
+    // What plays has to have something that plays in its place.
+    let play = shown.ask("POST /api/play", "{\"name\":\"yours\"}");
+    assert_eq!(play.status, 200);
+    assert!(comes_true(|| shown.status()["profile_id"] != "contra"));
+    let refused = shown.ask("DELETE /api/profile/yours", "");
+    assert_eq!((refused.status, text(&shown, "yours")), (409, Some(kept)));
+    browser.click("#rename");
+    name(&browser, "again");
+    assert!(comes_true(|| shown.ask("GET /api/profiles", "").json()["playing"] == "again"));
+}
+
+#[test]
+fn a_profile_is_exported_and_imported_under_another_name() {
+    let finger = Finger::start();
+    let shown = Shown::start(&finger.address(), "contra");
+    let Some(browser) = editor(&shown) else { return };
+    let decoders = shown.profile("x").parent().unwrap().with_file_name("decoders");
+    fs::create_dir_all(&decoders).unwrap();
+    let bytes = tactpad::pipeline::shipped::bytes("statics").unwrap();
+    fs::write(decoders.join("PAD-1.decoder"), &bytes).unwrap();
+    save(&shown, &browser, "contra", "2.5");
+    browser.wait("document.querySelector('#export-decoder option[value=\"PAD-1\"]')");
+    browser.run("const choice = document.getElementById('export-decoder'); choice.value = 'PAD-1'; choice.dispatchEvent(new Event('change'))");
+    let exported = "return fetch(document.getElementById('export').href).then((answer) => answer.text())";
+    let exported = browser.run(exported).as_str().unwrap().to_owned();
+    browser.run(&format!(
+        "const file = new File([{}], 'contra.tactpad'); const all = new DataTransfer(); all.items.add(file); \
+         const field = document.getElementById('import'); field.files = all.files; field.dispatchEvent(new Event('change'))",
+        serde_json::to_string(&exported).unwrap()
+    ));
+    browser.wait("document.getElementById('new-name')?.value === 'contra'");
+    name(&browser, "imported");
+    assert!(comes_true(|| text(&shown, "imported") == text(&shown, "contra")));
+    assert_eq!(fs::read(decoders.join("imported.decoder")).unwrap(), bytes.as_ref());
+    let again = serde_json::json!({"document": exported, "name": "imported"}).to_string();
+    let broken = serde_json::json!({"document": "{}", "name": "new"}).to_string();
+    let out = serde_json::json!({"document": exported, "name": "../out"}).to_string();
+    for asked in [again, broken, out] {
+        let refused = shown.ask("POST /api/import", &asked);
+        assert_eq!(refused.status, 400, "{refused:?}");
+    }
+}

@@ -2,6 +2,7 @@
 
 mod pad;
 mod player;
+use player::UNREADABLE;
 
 use std::collections::VecDeque;
 
@@ -89,6 +90,9 @@ pub(super) struct World {
     /// Profiles that are read by then.
     read_at: Vec<HostInstant>,
     is_paused: bool,
+    is_profile_asked: bool,
+    /// A profile cannot be read, which is told behind so many messages.
+    untold_from: Option<usize>,
     /// Whether quiet stretches are skipped, and how much was, µs.
     skips: bool,
     skipped_us: u64,
@@ -132,6 +136,8 @@ impl World {
             is_asked: false,
             read_at: Vec::new(),
             is_paused: false,
+            is_profile_asked: false,
+            untold_from: None,
             skips,
             skipped_us: 0,
         }
@@ -370,7 +376,16 @@ impl World {
             page.take();
         }
         self.note_causes();
-        if self.frozen_until.is_some() { Ok(()) } else { self.judge.look(&self.play) }
+        if self.frozen_until.is_some() {
+            return Ok(());
+        }
+        if let Some(from) = self.untold_from.take() {
+            let messages = self.play.messages.0.lock().unwrap();
+            if !messages[from..].iter().any(|line| line.contains(UNREADABLE)) {
+                return broken("a profile that cannot be read is told", messages[from..].join("; "));
+            }
+        }
+        self.judge.look(&self.play)
     }
 
     /// Notes what keeps the pad from playing at this moment.

@@ -2,6 +2,9 @@
 
 use super::*;
 
+/// What is wrong with a profile that is broken.
+pub(super) const UNREADABLE: &str = "line 3 is wrong";
+
 impl World {
     pub(super) fn touch(&mut self, contact: Contact) {
         let presses_anew = self.contact == AWAY && contact == RIGHT;
@@ -32,7 +35,7 @@ impl World {
                 request_count: 0,
             })),
             Wish::Break => Request::UpdateProfile(Box::new(ProfileUpdate {
-                read: Err("line 3 is wrong".into()),
+                read: Err(UNREADABLE.into()),
                 reason: None,
                 request_count: 0,
             })),
@@ -46,6 +49,11 @@ impl World {
             Wish::TogglePause => self.is_paused = !self.is_paused,
             Wish::Profile { read_ms, .. } | Wish::NextProfile { read_ms } | Wish::Reload { read_ms } => {
                 self.read_at.push(self.play.now.plus_us(1_000 * u64::from(read_ms)));
+                self.is_profile_asked = true;
+            }
+            // Once another one was asked for, what was read of this one is out of date.
+            Wish::Break if !self.is_profile_asked => {
+                self.untold_from = Some(self.play.messages.0.lock().unwrap().len());
             }
             _ => {}
         }

@@ -2,7 +2,6 @@
 
 mod pad;
 mod player;
-use player::UNREADABLE;
 
 use std::collections::VecDeque;
 
@@ -91,8 +90,9 @@ pub(super) struct World {
     read_at: Vec<HostInstant>,
     is_paused: bool,
     is_profile_asked: bool,
-    /// A profile cannot be read, which is told behind so many messages.
-    untold_from: Option<usize>,
+    /// Profiles that could not be read, and what is to be told of the last one.
+    broken_profiles: u32,
+    untold: Option<String>,
     /// Whether quiet stretches are skipped, and how much was, µs.
     skips: bool,
     skipped_us: u64,
@@ -137,7 +137,8 @@ impl World {
             read_at: Vec::new(),
             is_paused: false,
             is_profile_asked: false,
-            untold_from: None,
+            broken_profiles: 0,
+            untold: None,
             skips,
             skipped_us: 0,
         }
@@ -379,10 +380,10 @@ impl World {
         if self.frozen_until.is_some() {
             return Ok(());
         }
-        if let Some(from) = self.untold_from.take() {
+        if let Some(error) = self.untold.take() {
             let messages = self.play.messages.0.lock().unwrap();
-            if !messages[from..].iter().any(|line| line.contains(UNREADABLE)) {
-                return broken("a profile that cannot be read is told", messages[from..].join("; "));
+            if !messages.iter().any(|line| line.contains(&error)) {
+                return broken("a profile that cannot be read is told", error);
             }
         }
         self.judge.look(&self.play)

@@ -2,9 +2,6 @@
 
 use super::*;
 
-/// What is wrong with a profile that is broken.
-pub(super) const UNREADABLE: &str = "line 3 is wrong";
-
 impl World {
     pub(super) fn touch(&mut self, contact: Contact) {
         let presses_anew = self.contact == AWAY && contact == RIGHT;
@@ -34,11 +31,14 @@ impl World {
                 reason: None,
                 request_count: 0,
             })),
-            Wish::Break => Request::UpdateProfile(Box::new(ProfileUpdate {
-                read: Err(UNREADABLE.into()),
-                reason: None,
-                request_count: 0,
-            })),
+            Wish::Break => {
+                self.broken_profiles += 1;
+                let error = format!("line {} is wrong", self.broken_profiles);
+                // Once another one was asked for, what was read of this one is out of date.
+                self.untold = (!self.is_profile_asked).then(|| error.clone());
+                let read = Err(error);
+                Request::UpdateProfile(Box::new(ProfileUpdate { read, reason: None, request_count: 0 }))
+            }
             Wish::Preview(number) => Request::Preview(Box::new(profile(PROFILES[number]).unwrap())),
             Wish::Weigh { g } => Request::Weigh(Weight::of_g(g.into()).unwrap()),
             Wish::Status => Request::Status,
@@ -50,10 +50,6 @@ impl World {
             Wish::Profile { read_ms, .. } | Wish::NextProfile { read_ms } | Wish::Reload { read_ms } => {
                 self.read_at.push(self.play.now.plus_us(1_000 * u64::from(read_ms)));
                 self.is_profile_asked = true;
-            }
-            // Once another one was asked for, what was read of this one is out of date.
-            Wish::Break if !self.is_profile_asked => {
-                self.untold_from = Some(self.play.messages.0.lock().unwrap().len());
             }
             _ => {}
         }

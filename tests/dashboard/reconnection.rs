@@ -61,6 +61,17 @@ fn open_editor(browser: &Browser) {
     browser.wait("document.getElementById('profile-text')?.value.includes('press_n')");
 }
 
+/// A bridge that plays the draft of a tab. None without a browser.
+fn drafted() -> Option<(User, Shown, Browser)> {
+    let user = User::new();
+    let shown = user.start();
+    let browser = Browser::open(&shown.url)?;
+    open_editor(&browser);
+    write(&browser, "2.5");
+    assert!(comes_true(|| shown.status()["preview"] == true));
+    Some((user, shown, browser))
+}
+
 fn wait_for_draft(browser: &Browser, host: &str, press_n: &str) {
     browser.wait(&format!(
         "location.host === '{host}' && document.getElementById('profile-text')?.value.includes('press_n = {press_n}\\n')"
@@ -71,12 +82,7 @@ const IS_LOST: &str = "document.getElementById('connection').textContent.include
 
 #[test]
 fn the_same_tab_goes_on_with_the_draft_of_a_bridge_that_was_killed_also_after_a_reload() {
-    let user = User::new();
-    let shown = user.start();
-    let Some(browser) = Browser::open(&shown.url) else { return };
-    open_editor(&browser);
-    write(&browser, "2.5");
-    assert!(comes_true(|| shown.status()["preview"] == true));
+    let Some((user, shown, browser)) = drafted() else { return };
     let first = kill(shown);
     browser.wait(IS_LOST);
     write(&browser, "2.75");
@@ -129,12 +135,7 @@ fn a_page_whose_bridge_has_ended_shows_no_finger_no_state_and_what_to_do() {
 
 #[test]
 fn a_bridge_that_stands_still_is_told_and_its_tab_goes_on_where_it_was() {
-    let user = User::new();
-    let shown = user.start();
-    let Some(browser) = Browser::open(&shown.url) else { return };
-    open_editor(&browser);
-    write(&browser, "2.5");
-    assert!(comes_true(|| shown.status()["preview"] == true));
+    let Some((_user, shown, browser)) = drafted() else { return };
     browser.run("window.isTheSamePage = true");
     shown.running.signal(Signal::STOP);
     browser.wait(IS_LOST);
@@ -146,11 +147,7 @@ fn a_bridge_that_stands_still_is_told_and_its_tab_goes_on_where_it_was() {
 
 #[test]
 fn several_tabs_go_on_with_their_own_drafts() {
-    let user = User::new();
-    let shown = user.start();
-    let Some(browser) = Browser::open(&shown.url) else { return };
-    open_editor(&browser);
-    write(&browser, "2.5");
+    let Some((user, shown, browser)) = drafted() else { return };
     let first = browser.open_tab(&shown.url);
     open_editor(&browser);
     assert_eq!(browser.run("return document.getElementById('draft-state').textContent"), "✓ saved");
@@ -233,12 +230,7 @@ fn answered(stream: TcpStream) -> Option<String> {
 
 #[test]
 fn whoever_answers_where_the_page_was_learns_nothing_and_can_do_nothing_later() {
-    let user = User::new();
-    let shown = user.start();
-    let Some(browser) = Browser::open(&shown.url) else { return };
-    open_editor(&browser);
-    write(&browser, "2.5");
-    assert!(comes_true(|| shown.status()["preview"] == true));
+    let Some((user, shown, browser)) = drafted() else { return };
     let (token, keys) = (shown.token.clone(), shown.ask("GET /api/keys", "").json());
     let stranger = Stranger::start(&kill(shown));
     let handshakes = || stranger.heard().matches("POST /handshake").count();

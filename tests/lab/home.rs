@@ -1,8 +1,8 @@
 //! Calibration at home: presses without labels and a known weight on five marks, on pads whose truth is known.
 //!
 //! A pad is like the paper's, with other gains (10 %), poses (0.1 mm, 1.2°), crosstalk of 1.5 % between all channels, and with its
-//! friction, creep, restless finger and lasting noise. It does not age. Its field is the nominal one and its sensitivities: what the simulator's second
-//! order is worth is no question here. Beside it stands the same pad, calibrated by twenty contacts that a rig labelled.
+//! friction, creep, restless finger and lasting noise. It does not age. Its field is the nominal one and its sensitivities: what the
+//! simulator's second order is worth is no question here. Beside it stands the same pad, calibrated by twenty contacts that a rig labelled.
 //!
 //! The proof calibrates twenty pads, also by ten minutes of play, by presses near the middle alone and by the weight alone, and
 //! prints what the errors are of the rig's, median and worst. Seeds are counted from 1.

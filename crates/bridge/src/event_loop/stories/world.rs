@@ -89,6 +89,7 @@ pub(super) struct World {
     /// Profiles that are read by then.
     read_at: Vec<HostInstant>,
     is_paused: bool,
+    /// A profile was asked for, so that what is read of the one before is out of date.
     is_profile_asked: bool,
     /// Profiles that could not be read, and what is to be told of the last one.
     broken_profiles: u32,

@@ -34,7 +34,6 @@ impl World {
             Wish::Break => {
                 self.broken_profiles += 1;
                 let error = format!("line {} is wrong", self.broken_profiles);
-                // Once another one was asked for, what was read of this one is out of date.
                 self.untold = (!self.is_profile_asked).then(|| error.clone());
                 let read = Err(error);
                 Request::UpdateProfile(Box::new(ProfileUpdate { read, reason: None, request_count: 0 }))

@@ -239,7 +239,7 @@ impl LabelConvention {
     /// The same of a row's label. The force of a known weight is nobody's to write.
     pub fn meant_of(&self, row: &Row) -> Label {
         let meant = self.meant(&row.label);
-        row.weight_g.map_or(meant, |weight_g| meant.under_weight(weight_g.into()))
+        row.weight_g.map_or(meant, |weight_g| meant.under_weight(weight_g))
     }
 
     /// What is written so of a label in the pad's frame.

@@ -119,7 +119,7 @@ pub struct Row {
     /// By how much the pad was turned on the stage, counter-clockwise seen from above. Labels are in the pad's frame.
     pub turned_deg: Option<f64>,
     /// Grams of the known weight that lay there, 0 for an untouched pad; then the label's force is its, whatever the reference wrote.
-    pub weight_g: Option<f32>,
+    pub weight_g: Option<f64>,
     /// What the reference wrote.
     pub label: Label,
     /// The channels, in the order of [`CHANNEL_NAMES`](crate::quantity::CHANNEL_NAMES); none in a plan.

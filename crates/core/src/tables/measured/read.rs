@@ -125,7 +125,7 @@ impl Reader {
             dwell_s: self.optional(cells, Column::Dwell, &DWELLS_S, "s")?,
             approach: self.approach(cells)?,
             turned_deg: self.optional(cells, Column::Turned, &TURNS_DEG, "°")?,
-            weight_g: weight_g.map(|weight_g| weight_g as f32),
+            weight_g,
             label: weight_g.map_or(label, |weight_g| label.under_weight(weight_g)),
             uv: self.channels(cells)?,
         };

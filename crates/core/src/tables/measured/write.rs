@@ -120,7 +120,7 @@ fn push_cell(text: &mut String, column: Column, row: &Row, of: &Table) {
         Column::Dwell => (None, row.dwell_s),
         Column::Approach => (row.approach.map(|approach| approach.name().to_owned()), None),
         Column::Turned => (None, row.turned_deg),
-        Column::Weight => (None, row.weight_g.map(f64::from)),
+        Column::Weight => (None, row.weight_g),
         Column::Channels => return push_channels(text, row.uv),
         Column::Others => return push_others(text, row.line, of),
     };
@@ -189,12 +189,12 @@ mod tests {
     fn numbers_are_as_long_as_they_need_to_be() {
         let label = Label { x_mm: 0.1, y_mm: -28.999_998, fx_n: 0.0, fy_n: 1e-7, fz_n: 5.0 };
         let uv = [0.0, -0.000_4, 0.000_6, 1_234.567_89, -1e5, 0.1 + 0.2, -0.000_5, -1e13, -7.25];
-        let row = Row { t_s: Some(1.1), uv: Some(uv), ..Row::of(label) };
+        let row = Row { t_s: Some(1.1), weight_g: Some(25.1), uv: Some(uv), ..Row::of(label) };
         let table = Table { rows: vec![row], ..Table::default() };
         assert_eq!(
             written(&table)[1],
-            "1.1,0.1,-28.999998,0,0.0000001,5,0.000,0.000,0.001,1234.568,-100000.000,0.300,-0.001,-10000000000000.000,\
-             -7.250"
+            "1.1,0.1,-28.999998,0,0.0000001,5,0.000,0.000,0.001,1234.568,-100000.000,0.300,-0.001,\
+             -10000000000000.000,-7.250,25.1"
         );
     }
 

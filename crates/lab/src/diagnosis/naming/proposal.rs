@@ -131,7 +131,7 @@ fn planned_row(sample: &Sample, session: usize) -> Row {
         dwell_s: sample.dwell_s,
         approach: sample.is_unloading.then_some(Approach::Unloading),
         turned_deg: Some(sample.turned_deg).filter(|deg| *deg != 0.0),
-        weight_g: sample.is_weight.then(|| (fz_n / WEIGHT_N_PER_G).round() as f32),
+        weight_g: sample.is_weight.then(|| (fz_n / WEIGHT_N_PER_G).round()),
         ..Row::of(Label { x_mm, y_mm, fx_n, fy_n, fz_n })
     }
 }

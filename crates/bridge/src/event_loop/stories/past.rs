@@ -367,3 +367,10 @@ fn what_was_found_of_the_clock_stands_until_it_is_taken_back() {
     let begun = [(0, PLUG_IN), (0, Pace(20_000)), (0, Touch(RIGHT)), (3_000, Lift), (66, Touch(FINGER))];
     holds(&[&begun[..], &[(0, Pace(1_010)), (2_023, PullOut), (1_000, Rate(1_000))]].concat());
 }
+
+#[test]
+fn a_pad_that_begins_anew_while_its_clock_is_in_doubt_is_not_accused_of_the_jump() {
+    let begun = [(0, Rate(125)), (0, PLUG_IN), (0, Keep(true)), (1_937, Lift), (624, Rate(4_000))];
+    let anew = Restart { time_us: 4_292_932_878, is_flagged: false, offset: -177_586, text: 0 };
+    holds(&[&begun[..], &[(86, Keep(false)), (1_518, anew), (348, Lift), (3_000, Mend)]].concat());
+}

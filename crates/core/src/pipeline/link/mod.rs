@@ -187,7 +187,7 @@ impl Link {
         let arrival = Arrival {
             lost: u32::try_from(health.frames_lost - before.frames_lost).unwrap_or(u32::MAX),
             // Whatever fault is told of it.
-            breaks: (health.time_jumps, health.restarts) != (before.time_jumps, before.restarts),
+            breaks: is_next && self.clock.has_jumped || health.restarts != before.restarts,
             delay_us: is_next.then_some(delay_us),
         };
         self.check.sample(now, &reading, arrival);

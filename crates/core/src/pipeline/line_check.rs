@@ -312,11 +312,12 @@ impl LineCheck {
 
     /// Takes a sample, as it came. Of a frame that was damaged the number is missing.
     pub fn sample(&mut self, now: HostInstant, reading: &Reading, arrival: Arrival) {
+        let wrapped = self.look.as_ref().and_then(|look| look.wrapped(reading));
         if self.look.as_ref().is_some_and(|look| now.us_since(look.begun) >= LOOK_US) {
             self.close();
         }
         let look = self.look.get_or_insert_with(|| Look::begin(now, reading));
-        if let Some(largest) = look.wrapped(reading) {
+        if let Some(largest) = wrapped {
             // At once: what comes of it must not be told first.
             self.finding = Some(LineFinding::SequenceWraps { largest });
         }
@@ -567,6 +568,13 @@ mod tests {
             let short = move |sample: Sample, number| Sample { sequence: number & largest, ..sample };
             assert_eq!(found(ms, 1, short), Some(LineFinding::SequenceWraps { largest }), "{ms} ms");
         }
+    }
+
+    #[test]
+    fn a_number_that_begins_again_between_two_looks_is_found() {
+        // The first look ends with the 901st sample.
+        let short = |sample: Sample, number| Sample { sequence: (number + 123) & 1_023, ..sample };
+        assert_eq!(found(902, 1, short), Some(LineFinding::SequenceWraps { largest: 1_023 }));
     }
 
     #[test]

@@ -38,20 +38,24 @@ pub(super) enum Cause {
     Late,
     /// It begins anew.
     Anew,
+    /// Its sequence number has too few bits, and begins again.
+    Wraps,
     /// It began anew without a word, and went on by number and clock from where it was: it looks as if a finger had come.
     Unnoticed,
-    /// Something was over in a moment: a zero that somebody wants anew, an old frame.
+    /// An old frame came again.
+    Old,
+    /// Something was over in a moment: a zero that somebody wants anew.
     Moment,
 }
 
 use Cause::{
-    Anew, Channel, Channels, Clock, Denied, Frozen, Gone, Late, Loss, Moment, Paused, Silent, Touched, Under,
-    Unnoticed, Unusable, Weighing,
+    Anew, Channel, Channels, Clock, Denied, Frozen, Gone, Late, Loss, Moment, Old, Paused, Silent, Touched,
+    Under, Unnoticed, Unusable, Weighing, Wraps,
 };
 
-const ALL: [Cause; 17] = [
+const ALL: [Cause; 19] = [
     Gone, Denied, Unusable, Silent, Paused, Touched, Under, Weighing, Channel, Channels, Loss, Clock, Frozen,
-    Late, Anew, Unnoticed, Moment,
+    Late, Anew, Wraps, Unnoticed, Old, Moment,
 ];
 
 impl Cause {
@@ -63,6 +67,7 @@ impl Cause {
             Gone | Denied | Unusable => 750_000,
             Clock | Late => 1_500_000,
             Channels | Unnoticed => 10_500_000,
+            Old => 100_000,
             _ => 500_000,
         }
     }
@@ -75,16 +80,18 @@ impl Cause {
             Unusable => matches!(state, State::Unclear),
             Silent | Frozen => matches!(state, State::Silent | State::Doubtful),
             Paused => matches!(state, State::Paused),
-            Touched => matches!(state, State::Loaded | State::Taring),
+            // A finger that comes while a pad plays keeps nothing from playing.
+            Touched => false,
             Under => matches!(state, State::Loaded | State::Taring | State::Faulty | State::Doubtful),
             Weighing => matches!(state, State::Weighing),
             Channel | Channels | Unnoticed => {
                 matches!(state, State::Faulty | State::Doubtful | State::Taring | State::Loaded)
             }
+            Old => matches!(state, State::Doubtful),
             Loss | Clock => matches!(state, State::Doubtful | State::Silent),
             // What was sent under a finger is heard now.
             Late => matches!(state, State::Taring | State::Loaded | State::Doubtful | State::Silent),
-            Anew | Moment => matches!(state, State::Taring | State::Doubtful | State::Silent),
+            Anew | Wraps | Moment => matches!(state, State::Taring | State::Doubtful | State::Silent),
         }
     }
 
@@ -95,7 +102,7 @@ impl Cause {
             LineFinding::Clock { .. } => matches!(self, Clock),
             LineFinding::ChannelStands { .. } => matches!(self, Channel | Channels),
             // That is what is seen of a pad that begins anew again and again, does not say so, and whose clock goes on.
-            LineFinding::SequenceWraps { .. } => matches!(self, Anew),
+            LineFinding::SequenceWraps { .. } => matches!(self, Anew | Wraps),
             _ => false,
         }
     }
@@ -154,15 +161,20 @@ impl Causes {
         self.there[cause as usize].is_none_or(|at| now.us_since(at) > cause.aftermath_us())
     }
 
+    /// When it was there last.
+    pub(super) fn last(&self, cause: Cause) -> Option<HostInstant> {
+        self.there[cause as usize]
+    }
+
     /// Those that were there within the last `us`.
     pub(super) fn within(&self, now: HostInstant, us: u64) -> impl Iterator<Item = Cause> {
         ALL.into_iter()
             .filter(move |cause| self.there[*cause as usize].is_some_and(|at| now.us_since(at) <= us))
     }
 
-    /// Whether a pad has to play: whatever kept it from that is over for long enough.
+    /// Whether a pad has to play, with a finger on it or without: whatever kept it from that is over for long enough.
     pub(super) fn have_passed(&self, now: HostInstant) -> bool {
-        ALL.into_iter().all(|cause| self.has_passed(now, cause))
+        ALL.into_iter().all(|cause| cause == Touched || self.has_passed(now, cause))
     }
 
     /// Whether nothing at all was wrong for `us`.

@@ -38,6 +38,8 @@ pub(super) enum Event {
     ClockJump(u64),
     /// The pad's clock has so many bits.
     ClockBits(u32),
+    /// Its sequence number has so many.
+    SequenceBits(u32),
     /// In a millisecond the pad's clock goes on by so many microseconds.
     Pace(u32),
     /// A channel is off, and no other one.
@@ -106,6 +108,10 @@ pub(super) enum Wish {
     Reload {
         read_ms: u32,
     },
+    /// One that cannot be read.
+    Unreadable {
+        read_ms: u32,
+    },
     /// The file of the profile in play is edited, so that this one stands there.
     Edit(usize),
     /// It is edited so that it cannot be read.
@@ -120,6 +126,9 @@ pub(super) enum Wish {
 
 /// Names of profiles that a story plays: with each a finger to the right presses something at once.
 pub(super) const PROFILES: [&str; 6] = ["contra", "tetris", "super-mario", "btanks", "supertux", "vitetris"];
+
+/// One that cannot be read.
+pub(super) const UNREADABLE: &str = "unreadable";
 
 /// Serial numbers of pads.
 pub(super) const PADS: [&str; 3] = ["PAD-1", "PAD-2", ""];
@@ -156,7 +165,14 @@ pub(super) fn story(seed: u64) -> Vec<Step> {
         Step { after_ms: 0, event: Event::Rate(draw.rate_hz()) },
         Step { after_ms: draw.wait_ms(), event: Event::PlugIn { is_anew: true } },
     ];
-    steps.extend((steps.len()..count).map(|_| Step { after_ms: draw.wait_ms(), event: draw.event() }));
+    while steps.len() < count {
+        let event = draw.event();
+        steps.push(Step { after_ms: draw.wait_ms(), event });
+        // A pad that begins anew, or seems to, often does so again at once.
+        if matches!(event, Event::Restart { .. } | Event::Repeat { .. }) && draw.below(4) == 0 {
+            steps.push(Step { after_ms: draw.below(600) as u32, event: draw.restart() });
+        }
+    }
     steps.push(Step { after_ms: draw.wait_ms(), event: Event::Mend });
     steps
 }
@@ -233,7 +249,7 @@ impl Draw {
     fn wish(&mut self) -> Wish {
         let read_ms = self.of(&[0, 0, 5, 300]);
         let number = self.below(PROFILES.len() as u64) as usize;
-        match self.below(14) {
+        match self.below(15) {
             0 => Wish::Pause,
             1 => Wish::Resume,
             2 => Wish::TogglePause,
@@ -245,14 +261,24 @@ impl Draw {
             9 => Wish::Edit(number),
             10 => Wish::Break,
             11 => Wish::Preview(number),
-            12 => Wish::Weigh { g: self.of(&[50, 200, 500]) },
+            12 => Wish::Unreadable { read_ms },
+            13 => Wish::Weigh { g: self.of(&[50, 200, 500]) },
             _ => Wish::Status,
+        }
+    }
+
+    fn restart(&mut self) -> Event {
+        Event::Restart {
+            time_us: self.time_us(),
+            is_flagged: self.either(),
+            offset: self.between(-400_000, 400_000) as i32,
+            text: self.below(BOOT_TEXTS.len() as u64) as usize,
         }
     }
 
     /// What the pad and its line do.
     fn pad(&mut self) -> Event {
-        match self.below(20) {
+        match self.below(21) {
             0 | 1 => Event::PlugIn { is_anew: self.either() },
             2 => Event::PullOut,
             3 => Event::Port(self.of(&[
@@ -261,12 +287,7 @@ impl Draw {
                 PortState::Denied,
                 PortState::Unusable,
             ])),
-            4 | 5 => Event::Restart {
-                time_us: self.time_us(),
-                is_flagged: self.either(),
-                offset: self.between(-400_000, 400_000) as i32,
-                text: self.below(BOOT_TEXTS.len() as u64) as usize,
-            },
+            4 | 5 => self.restart(),
             6 => Event::Identify(self.below(PADS.len() as u64) as usize),
             7 => Event::Rate(self.rate_hz()),
             8 | 9 => Event::Stall(self.either()),
@@ -282,6 +303,7 @@ impl Draw {
             },
             17 => Event::ClockJump(self.time_us()),
             18 => Event::ClockBits(self.of(&[64, 64, 32])),
+            19 => Event::SequenceBits(self.of(&[32, 8, 12, 16])),
             _ => Event::Pace(self.of(&[1_000, 1_000, 990, 1_010, 1, 3_000, 20_000])),
         }
     }

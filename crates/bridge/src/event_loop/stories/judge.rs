@@ -5,10 +5,11 @@
 //! seconds, by the name of what is really wrong, and no word is said that is not true.
 
 use std::collections::BTreeMap;
+use std::mem::{Discriminant, discriminant};
 
 use super::super::state;
 use super::super::virtual_time::Play;
-use super::cause::Cause::{self, Anew, Channel, Clock, Frozen, Loss, Silent, Under, Unnoticed};
+use super::cause::Cause::{self, Anew, Channel, Clock, Frozen, Loss, Silent, Under, Unnoticed, Wraps};
 use super::cause::Causes;
 use crate::state::State;
 use tactpad_core::pipeline::Phase;
@@ -66,7 +67,11 @@ pub(super) struct Judge {
     looked: HostInstant,
     /// When something was found about the stream last.
     found: Option<HostInstant>,
+    /// What is found, and since when it is the same.
+    stands: Option<(Subject, HostInstant)>,
     kept_since: Option<HostInstant>,
+    /// When channels answered again of which there was no zero.
+    answered: Option<HostInstant>,
     /// A press that has to count by then.
     promise: Option<HostInstant>,
     /// The number after which a smaller one came, and when the pad had not counted past it.
@@ -133,11 +138,21 @@ impl Judge {
         self.are_told_true(play)
     }
 
+    /// Whether no finger was heard for so long that nothing comes of it any more.
+    pub(super) fn is_untouched(&self, now: HostInstant) -> bool {
+        self.touch_heard.is_none_or(|at| now.us_since(at) > GHOST_US)
+    }
+
+    /// All channels that were off answer again, and the zero was measured without them: it is measured anew.
+    pub(super) fn answer(&mut self, now: HostInstant) {
+        self.answered = Some(now);
+    }
+
     fn may_go_down(&self, play: &Play, code: &Code) -> Result<(), Broken> {
         let now = play.now;
-        let was_touched = self.touch_heard.is_some_and(|at| now.us_since(at) <= GHOST_US);
-        let may_be_channel = self.causes.within(now, FAR_US).any(|cause| cause == Channel);
-        if !was_touched && !may_be_channel {
+        let is_off = self.causes.within(now, FAR_US).any(|cause| cause == Channel);
+        let may_be_channel = is_off && self.causes.last(Channel) > self.answered;
+        if self.is_untouched(now) && !may_be_channel {
             return broken("nothing goes down without a finger", code);
         }
         Ok(())
@@ -195,11 +210,32 @@ impl Judge {
             return broken("what is found is so", format!("{finding}; {}", self.words(play)));
         }
         if state != State::Playing && self.kept_since.is_some_and(|since| now.us_since(since) > NAMED_US) {
-            // Of a stream that is not heard any more a finding explains nothing.
-            let is_recent = self.heard.is_some_and(|heard| now.us_since(heard) <= NAMED_US);
-            self.is_named(play, state, finding.filter(|_| is_recent))?;
+            self.is_named(play, state, finding)?;
         }
-        Ok(())
+        self.is_finding_told(play, finding)
+    }
+
+    /// What is found for three seconds about a stream that is heard has its own words.
+    fn is_finding_told(&mut self, play: &Play, finding: Option<&LineFinding>) -> Result<(), Broken> {
+        let now = play.now;
+        let subject = finding.map(|finding| (discriminant(finding), finding.channel()));
+        if self.stands.is_none_or(|(before, _)| subject != Some(before)) || self.unheard == now {
+            self.stands = subject.map(|subject| (subject, now));
+        }
+        let lasts = self.stands.is_some_and(|(_, since)| now.us_since(since) > NAMED_US);
+        let Some(finding) = finding.filter(|_| lasts) else { return Ok(()) };
+        let messages = play.messages.0.lock().unwrap();
+        let is_recent = |at: &HostInstant| now.us_since(*at) <= REPEAT_US;
+        // A warning takes back no finding.
+        let last = messages.iter().rfind(|line| is_state(line) || is_found(line) && !line.contains(STRAY));
+        let recent = messages.iter().zip(&self.told).filter(|(_, at)| is_recent(at)).map(|(line, _)| line);
+        if recent.chain(last).any(|line| is_of_kind(line, finding)) {
+            return Ok(());
+        }
+        broken(
+            "what is found is told",
+            format!("{finding}; {}; {:#?}", self.words(play), self.all_told(now, &messages)),
+        )
     }
 
     /// Whether this finding about the stream is so. Of a number that began again, where that was so, it is believed that it does so at the same
@@ -218,6 +254,9 @@ impl Judge {
     /// What has kept the pad from playing for three seconds has its word, in the status and on the console.
     fn is_named(&self, play: &Play, state: State, finding: Option<&LineFinding>) -> Result<(), Broken> {
         let now = play.now;
+        // Of a stream that is not heard any more a finding explains nothing.
+        let is_heard = self.heard.is_some_and(|heard| now.us_since(heard) <= NAMED_US);
+        let finding = finding.filter(|_| is_heard);
         let is_state_right = self.causes.explain(now, NAMED_US, state);
         if !is_state_right && finding.is_none() {
             return broken("the status names what keeps a pad from playing", self.words(play));
@@ -229,24 +268,24 @@ impl Judge {
         let is_right = |line: &String| {
             STATES.iter().any(|state| line == state.sentence() && self.causes.explain(now, NAMED_US, *state))
                 || finding.is_some_and(|finding| is_of_kind(line, finding))
-                || self.is_found_so(now, lasts_us, line) == Some(true)
+                || is_heard && self.is_found_so(now, lasts_us, line) == Some(true)
         };
         // What was told last of the pad or of its stream lasts still, or may not be told again yet.
-        let is_state =
-            |line: &&String| STATES.iter().chain(&[State::Playing]).any(|state| *line == state.sentence());
-        let is_found = |line: &&String| FOUND.iter().any(|(words, _)| line.contains(words));
         let recent = messages.iter().zip(&self.told).filter(|(_, at)| now.us_since(**at) <= REPEAT_US);
         let last_found = messages.iter().rfind(|line| is_state(line) || is_found(line));
-        let last = [messages.iter().rfind(is_state), last_found];
+        let last = [messages.iter().rfind(|line| is_state(line)), last_found];
         if recent.map(|(line, _)| line).chain(last.into_iter().flatten()).any(is_right) {
             return Ok(());
         }
-        let told: Vec<String> = messages
-            .iter()
-            .zip(&self.told)
-            .map(|(line, at)| format!("{} s ago: {line}", now.us_since(*at) / 1_000_000))
-            .collect();
+        let told = self.all_told(now, &messages);
         broken("what keeps a pad from playing is told", format!("{}; {told:#?}", self.words(play)))
+    }
+
+    /// All that was told, and when.
+    fn all_told(&self, now: HostInstant, messages: &[String]) -> Vec<String> {
+        let line =
+            |(line, at): (&String, &HostInstant)| format!("{} s ago: {line}", now.us_since(*at) / 1_000_000);
+        messages.iter().zip(&self.told).map(line).collect()
     }
 
     /// What was told since is true.
@@ -317,8 +356,21 @@ const FOUND: [(&str, &[Cause]); 5] = [
     ("all the time while others change", &[Channel]),
     // What no finger makes a channel read a finger does that has moved since the zero was measured under it.
     (STRAY, &[Channel, Under, Unnoticed]),
-    ("comes a smaller one", &[Anew]),
+    ("comes a smaller one", &[Anew, Wraps]),
 ];
+
+/// The kind of a finding, and the channel that it is about.
+type Subject = (Discriminant<LineFinding>, Option<usize>);
+
+/// Whether this line tells a state.
+fn is_state(line: &str) -> bool {
+    STATES.iter().chain(&[State::Playing]).any(|state| line == state.sentence())
+}
+
+/// Whether it tells what was found about the stream.
+fn is_found(line: &str) -> bool {
+    FOUND.iter().any(|(words, _)| line.contains(words))
+}
 
 /// Whether this line tells a finding of this kind, whatever its numbers.
 fn is_of_kind(line: &str, finding: &LineFinding) -> bool {

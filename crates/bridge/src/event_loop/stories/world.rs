@@ -15,15 +15,21 @@ use tactpad_numeric::random::SplitMix64;
 use super::super::virtual_time::{ASLEEP, Play, profile};
 use super::super::*;
 use super::cause::Cause;
-use super::event::{AWAY, BOOT_TEXTS, Draw, Event, Off, PADS, PROFILES, PortState, RIGHT, Step, Wish};
+use super::event::{
+    AWAY, BOOT_TEXTS, Draw, Event, Off, PADS, PROFILES, PortState, RIGHT, Step, UNREADABLE, Wish,
+};
 use super::judge::{Broken, Judge, TAKEN_BACK_US, broken};
 use super::page::Page;
 use crate::transport::opener::PadError;
 use tactpad_core::pad::weight::Weight;
+use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::quantity::Contact;
 
 /// About each event so much is played at full rate, µs; what is longer and quiet is skipped.
 const DENSE_US: u64 = 2_000_000;
+
+/// A zero is measured within this time, µs.
+const TARED_US: u64 = 500_000;
 
 /// A hub keeps so many bytes.
 const KEPT_MAX: usize = 64 << 10;
@@ -57,6 +63,7 @@ pub(super) struct World {
     rate_hz: u32,
     next_sample: HostInstant,
     clock_bits: u32,
+    sequence_bits: u32,
     is_plugged: bool,
     is_stalled: bool,
     kept: Option<Vec<u8>>,
@@ -74,6 +81,9 @@ pub(super) struct World {
     off: [Option<(Off, i32)>; 9],
     /// What drifts has drifted by so much, counts.
     drifted: [f64; 9],
+    /// Since when channels read nothing, and which did so while the zero was measured.
+    dead_since: [Option<HostInstant>; 9],
+    is_dead_at_zero: [bool; 9],
     /// Channels that were off since the pad was sound and untouched for long enough.
     was_off: [bool; 9],
     /// A channel reads otherwise than when the zero was measured, and a finger has been there since.
@@ -91,9 +101,9 @@ pub(super) struct World {
     is_paused: bool,
     /// A profile was asked for, so that what is read of the one before is out of date.
     is_profile_asked: bool,
-    /// Profiles that could not be read, and what is to be told of the last one.
+    /// Profiles that could not be read, and what is to be told of those that the bridge knows of by now.
     broken_profiles: u32,
-    untold: Option<String>,
+    untold: Vec<String>,
     /// Whether quiet stretches are skipped, and how much was, µs.
     skips: bool,
     skipped_us: u64,
@@ -115,6 +125,7 @@ impl World {
             rate_hz: 1_000,
             next_sample: HostInstant::default(),
             clock_bits: 64,
+            sequence_bits: 32,
             is_plugged: false,
             is_stalled: false,
             kept: None,
@@ -128,6 +139,8 @@ impl World {
             damage_permille: 0,
             off: [None; 9],
             drifted: [0.0; 9],
+            dead_since: [None; 9],
+            is_dead_at_zero: [false; 9],
             was_off: [false; 9],
             is_zero_old: false,
             is_zero_under: false,
@@ -139,7 +152,7 @@ impl World {
             is_paused: false,
             is_profile_asked: false,
             broken_profiles: 0,
-            untold: None,
+            untold: Vec::new(),
             skips,
             skipped_us: 0,
         }
@@ -256,6 +269,7 @@ impl World {
                 self.play.offset[channel] += self.drifted[channel] as i32 - before;
             }
         }
+        let is_wrap = self.count();
         let sample = self.play.sample(&self.contact);
         let mut frame = [0; ENCODED_MAX];
         let length = encode_message(&Message::Sample(sample), &mut frame);
@@ -270,7 +284,33 @@ impl World {
             frame[place] ^= 1 + self.chance.below(255) as u8;
             return self.send(&frame[..length], None);
         }
-        self.send(&frame[..length], Some(&sample))
+        self.send(&frame[..length], Some(&sample))?;
+        if is_wrap { self.is_wrap_found(&sample) } else { Ok(()) }
+    }
+
+    /// The pad's sequence number as far as it has bits; whether it begins again.
+    fn count(&mut self) -> bool {
+        let number = self.play.sequence & (u32::MAX >> (32 - self.sequence_bits));
+        let is_wrap = std::mem::replace(&mut self.play.sequence, number) != number;
+        if is_wrap {
+            self.judge.causes.note(self.play.now, Cause::Wraps);
+            self.note_moment();
+        }
+        is_wrap
+    }
+
+    /// After the largest number comes zero, both are read, and it is found before anything comes of it.
+    fn is_wrap_found(&mut self, zero: &Sample) -> Result<(), Broken> {
+        let [.., largest, read] = self.read.make_contiguous() else { return Ok(()) };
+        let is_largest = largest.sequence == u32::MAX >> (32 - self.sequence_bits);
+        let is_sound = zero.sequence == 0 && zero.time_us > largest.time_us && !zero.status.restarted();
+        if read != zero || !is_largest || !is_sound || self.frozen_until.is_some() {
+            return Ok(());
+        }
+        match self.play.bridge.driver.pipeline.line_finding() {
+            Some(LineFinding::SequenceWraps { largest: found }) if *found == largest.sequence => Ok(()),
+            _ => broken("a number that begins again is found at once", self.judge.words(&self.play)),
+        }
     }
 
     /// Bytes leave the pad. They may be a sound sample.
@@ -349,6 +389,12 @@ impl World {
         self.judge.take(&self.play)
     }
 
+    /// Why the next profile cannot be read.
+    pub(super) fn cannot_be_read(&mut self) -> String {
+        self.broken_profiles += 1;
+        format!("line {} is wrong", self.broken_profiles)
+    }
+
     fn hand_in_profiles(&mut self) -> Result<(), Broken> {
         let now = self.play.now;
         let due = self.read_at.iter().filter(|at| **at <= now).count();
@@ -363,6 +409,11 @@ impl World {
             };
             let Some((request, reply)) = reading else { break };
             reply.hand_in(match request {
+                ProfileRequest::Named(name) if name == UNREADABLE => {
+                    let error = self.cannot_be_read();
+                    self.untold.push(error.clone());
+                    Err(error)
+                }
                 ProfileRequest::Named(name) => profile(&name),
                 ProfileRequest::Same => profile(PROFILES[0]),
                 ProfileRequest::Next => profile(PROFILES[self.chance.below(PROFILES.len() as u64) as usize]),
@@ -381,7 +432,7 @@ impl World {
         if self.frozen_until.is_some() {
             return Ok(());
         }
-        if let Some(error) = self.untold.take() {
+        for error in self.untold.drain(..) {
             let messages = self.play.messages.0.lock().unwrap();
             if !messages.iter().any(|line| line.contains(&error)) {
                 return broken("a profile that cannot be read is told", error);
@@ -397,8 +448,13 @@ impl World {
         let phase = self.play.bridge.driver.pipeline.phase();
         let is_silent = self.is_stalled || self.kept.is_some();
         let is_off = self.off.iter().any(Option::is_some) || self.is_zero_old;
-        if !is_off && self.judge.causes.have_passed(now) {
+        let is_untouched = self.judge.causes.has_passed(now, Cause::Touched);
+        if !is_off && is_untouched && self.judge.causes.have_passed(now) {
             self.was_off = [false; 9];
+        }
+        if phase == Phase::Taring {
+            self.is_dead_at_zero =
+                self.dead_since.map(|since| since.is_some_and(|since| now.us_since(since) > TARED_US));
         }
         let is_several = is_off && self.was_off.iter().filter(|was_off| **was_off).count() > 1;
         let there = [
@@ -425,10 +481,15 @@ impl World {
         }
     }
 
-    /// Something is over in a moment.
+    /// Something is over in a moment, and the zero may be measured anew.
     fn note_moment(&mut self) {
-        self.judge.causes.note(self.play.now, Cause::Moment);
+        self.note_break();
         self.is_zero_under |= self.contact.fz_n > 0.0;
+    }
+
+    /// Something is over in a moment.
+    fn note_break(&mut self) {
+        self.judge.causes.note(self.play.now, Cause::Moment);
         self.judge.excuse();
     }
 

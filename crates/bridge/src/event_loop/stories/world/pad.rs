@@ -71,7 +71,15 @@ impl World {
                 let bytes: Vec<u8> = (0..=draw.below(100)).map(|_| draw.below(256) as u8).collect();
                 self.send_if_plugged(&bytes)?;
             }
-            Event::Repeat { age, frames } => self.repeat(age, frames)?,
+            Event::Repeat { age, frames } => {
+                let is_dropped = self.is_dropped(age, frames);
+                self.repeat(age, frames)?;
+                if is_dropped {
+                    self.judge.causes.note(self.play.now, Cause::Old);
+                    self.judge.excuse();
+                    return Ok(());
+                }
+            }
             Event::ClockJump(time_us) => {
                 self.doubt_clock();
                 self.set_clock(time_us);
@@ -80,6 +88,7 @@ impl World {
                 self.clock_bits = bits;
                 self.set_clock(self.play.time_us);
             }
+            Event::SequenceBits(bits) => self.sequence_bits = bits,
             Event::Pace(us_per_ms) => play.us_per_ms = u64::from(us_per_ms),
             Event::Off(channel, off) => {
                 self.cure();
@@ -89,17 +98,29 @@ impl World {
                 self.was_off[channel] = true;
                 let reads = play.sent.back().map_or(0, |sent| sent.counts[channel]);
                 self.off[channel] = Some((off, reads));
+                let is_dead = matches!(off, Off::Saturated | Off::Stuck);
+                self.dead_since[channel] = is_dead.then_some(self.dead_since[channel].unwrap_or(play.now));
                 self.wire();
             }
             Event::Cure => self.cure(),
             Event::Sleep { s, is_powered } => self.sleep(s, is_powered)?,
             _ => return Ok(()),
         }
-        self.note_moment();
+        match event {
+            // Over a silence the zero stays, and with it what lies there.
+            Event::Stall(_) | Event::Keep(_) => self.note_break(),
+            _ => self.note_moment(),
+        }
         if matches!(event, Event::Lose(_)) {
             self.judge.causes.note(self.play.now, Cause::Loss);
         }
         Ok(())
+    }
+
+    /// Whether frames that come again end a contact and nothing else: the pad plays, and they are known, or too few to be a run that it
+    /// began.
+    fn is_dropped(&self, age: u32, frames: u32) -> bool {
+        self.judge.causes.have_passed(self.play.now) && (age <= KNOWN as u32 || frames.min(age) < 3)
     }
 
     fn send_if_plugged(&mut self, bytes: &[u8]) -> Result<(), Broken> {
@@ -108,8 +129,22 @@ impl World {
 
     pub(super) fn cure(&mut self) {
         self.is_zero_old |= self.off.iter().any(Option::is_some) && self.contact.fz_n > 0.0;
-        self.off = [None; 9];
+        let was_in_zero =
+            self.off.iter().zip(self.is_dead_at_zero).any(|(off, is_dead)| off.is_some() && !is_dead);
+        if !was_in_zero && self.is_heard_by_now() {
+            self.judge.answer(self.play.now);
+        }
+        (self.off, self.dead_since) = ([None; 9], [None; 9]);
         self.wire();
+    }
+
+    /// Whether the bridge hears the pad, nobody has touched it for long, and its zero is known.
+    fn is_heard_by_now(&self) -> bool {
+        let is_heard =
+            self.is_plugged && !self.is_stalled && self.kept.is_none() && self.frozen_until.is_none();
+        is_heard
+            && self.judge.is_untouched(self.play.now)
+            && self.play.bridge.driver.pipeline.phase() != Phase::Taring
     }
 
     /// Lays the pad's wires as they are now.

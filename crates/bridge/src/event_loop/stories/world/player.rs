@@ -24,6 +24,7 @@ impl World {
             Wish::Tare => Request::Retare,
             Wish::Panic => Request::ReleaseAll,
             Wish::Profile { number, .. } => Request::Profile(Some(PROFILES[number].into())),
+            Wish::Unreadable { .. } => Request::Profile(Some(UNREADABLE.into())),
             Wish::NextProfile { .. } => Request::NextProfile,
             Wish::Reload { .. } => Request::Profile(None),
             Wish::Edit(number) => Request::UpdateProfile(Box::new(ProfileUpdate {
@@ -32,9 +33,10 @@ impl World {
                 request_count: 0,
             })),
             Wish::Break => {
-                self.broken_profiles += 1;
-                let error = format!("line {} is wrong", self.broken_profiles);
-                self.untold = (!self.is_profile_asked).then(|| error.clone());
+                let error = self.cannot_be_read();
+                if !self.is_profile_asked {
+                    self.untold.push(error.clone());
+                }
                 let read = Err(error);
                 Request::UpdateProfile(Box::new(ProfileUpdate { read, reason: None, request_count: 0 }))
             }
@@ -46,7 +48,10 @@ impl World {
             Wish::Pause => self.is_paused = true,
             Wish::Resume => self.is_paused = false,
             Wish::TogglePause => self.is_paused = !self.is_paused,
-            Wish::Profile { read_ms, .. } | Wish::NextProfile { read_ms } | Wish::Reload { read_ms } => {
+            Wish::Profile { read_ms, .. }
+            | Wish::NextProfile { read_ms }
+            | Wish::Reload { read_ms }
+            | Wish::Unreadable { read_ms } => {
                 self.read_at.push(self.play.now.plus_us(1_000 * u64::from(read_ms)));
                 self.is_profile_asked = true;
             }
@@ -82,6 +87,7 @@ impl World {
             Event::LossPermille(0),
             Event::DamagePermille(0),
             Event::Pace(1_000),
+            Event::SequenceBits(32),
             Event::Stall(false),
             Event::Keep(false),
             Event::ReaderStall(false),

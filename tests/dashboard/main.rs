@@ -12,6 +12,7 @@ mod editor;
 mod finger;
 mod guides;
 mod http;
+mod leftovers;
 mod live;
 mod numbers;
 mod openings;

@@ -89,8 +89,7 @@ impl Cause {
             }
             Old => matches!(state, State::Doubtful),
             Loss | Clock => matches!(state, State::Doubtful | State::Silent),
-            // What was sent under a finger is heard now.
-            Late => matches!(state, State::Taring | State::Loaded | State::Doubtful | State::Silent),
+            Late => matches!(state, State::Doubtful | State::Silent),
             Anew | Wraps | Moment => matches!(state, State::Taring | State::Doubtful | State::Silent),
         }
     }

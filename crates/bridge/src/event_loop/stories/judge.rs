@@ -18,6 +18,9 @@ use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::quantity::CHANNEL_NAMES;
 use tactpad_core::time::HostInstant;
 
+/// A zero that is measured anew was asked for within this time, µs: frames that do not go on are a run after three of them, at 100 a second.
+const ANEW_US: u64 = 1_000_000;
+
 /// Silence releases everything within this time, µs.
 const RELEASED_US: u64 = 100_000;
 
@@ -172,6 +175,13 @@ impl Judge {
         if self.causes.have_passed(now) && pipeline.phase() != Phase::Playing {
             return broken("a sound pad plays", self.words(play));
         }
+        let state = state(&play.bridge.driver, &play.bridge.connection);
+        // On a bad line, or by a clock in doubt, a zero takes its time.
+        let is_slow = self.causes.within(now, NAMED_US).any(|cause| matches!(cause, Loss | Clock));
+        let is_anew = matches!(state, State::Taring | State::Loaded) && !is_slow;
+        if is_anew && !self.causes.explain(now, ANEW_US, state) {
+            return broken("the zero is measured anew where something asks for it", self.words(play));
+        }
         self.keep_promise(play, is_held)?;
         if now.us_since(self.looked) >= LOOK_US {
             self.looked = now;
@@ -317,8 +327,12 @@ impl Judge {
             true => self.causes.was_off_since_sound(now, us, channel),
             false => self.causes.was_off(now, us, channel),
         };
-        Some(self.causes.within(now, us).any(|cause| {
-            causes.contains(&cause) && (cause != Channel || named_channel(line).is_none_or(was_off))
+        // Of a channel that answers again there is a zero at once.
+        let has_answered = self.answered.is_some_and(|at| self.causes.last(Channel) <= Some(at));
+        Some(self.causes.within(now, us).any(|cause| match cause {
+            Channel if line.contains(STRAY) && has_answered => false,
+            Channel => causes.contains(&Channel) && named_channel(line).is_none_or(was_off),
+            cause => causes.contains(&cause),
         }))
     }
 

@@ -28,8 +28,8 @@ use tactpad_core::quantity::Contact;
 /// About each event so much is played at full rate, µs; what is longer and quiet is skipped.
 const DENSE_US: u64 = 2_000_000;
 
-/// A zero is measured within this time, µs.
-const TARED_US: u64 = 500_000;
+/// So long a channel reads the same until the bridge knows that it reads nothing, and a zero is measured, µs.
+const DEAD_US: u64 = 1_500_000;
 
 /// A hub keeps so many bytes.
 const KEPT_MAX: usize = 64 << 10;
@@ -454,7 +454,7 @@ impl World {
         }
         if phase == Phase::Taring {
             self.is_dead_at_zero =
-                self.dead_since.map(|since| since.is_some_and(|since| now.us_since(since) > TARED_US));
+                self.dead_since.map(|since| since.is_some_and(|since| now.us_since(since) > DEAD_US));
         }
         let is_several = is_off && self.was_off.iter().filter(|was_off| **was_off).count() > 1;
         let there = [

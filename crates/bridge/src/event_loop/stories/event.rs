@@ -168,9 +168,10 @@ pub(super) fn story(seed: u64) -> Vec<Step> {
     while steps.len() < count {
         let event = draw.event();
         steps.push(Step { after_ms: draw.wait_ms(), event });
-        // A pad that begins anew, or seems to, often does so again at once.
-        if matches!(event, Event::Restart { .. } | Event::Repeat { .. }) && draw.below(4) == 0 {
-            steps.push(Step { after_ms: draw.below(600) as u32, event: draw.restart() });
+        let mut sequel = draw.sequel(event);
+        while let Some(last) = sequel.last().copied() {
+            steps.extend(sequel);
+            sequel = draw.sequel(last.event);
         }
     }
     steps.push(Step { after_ms: draw.wait_ms(), event: Event::Mend });
@@ -264,6 +265,27 @@ impl Draw {
             12 => Wish::Unreadable { read_ms },
             13 => Wish::Weigh { g: self.of(&[50, 200, 500]) },
             _ => Wish::Status,
+        }
+    }
+
+    /// What often comes of an event, and would seldom follow it by chance.
+    fn sequel(&mut self, event: Event) -> Vec<Step> {
+        let (is_there, is_old) = (self.below(3) == 0, self.either());
+        let restart = self.restart();
+        let mut later =
+            |from_ms: i64, to_ms: i64, event| Step { after_ms: self.between(from_ms, to_ms) as u32, event };
+        match event {
+            _ if !is_there => Vec::new(),
+            // After a pad began anew its first frames come again; and it begins anew at once.
+            Event::Restart { .. } if is_old => vec![later(0, 300, Event::Repeat { age: 500, frames: 3 })],
+            Event::Restart { .. } | Event::Repeat { .. } => vec![later(0, 600, restart)],
+            // A channel without a wire is so while the zero is measured, and answers later.
+            Event::Off(_, Off::Saturated | Off::Stuck) => {
+                vec![later(1_000, 3_000, restart), later(300, 3_000, Event::Cure)]
+            }
+            Event::Keep(true) => vec![later(0, 3_000, Event::Keep(false))],
+            Event::Stall(true) => vec![later(0, 3_000, Event::Stall(false))],
+            _ => Vec::new(),
         }
     }
 

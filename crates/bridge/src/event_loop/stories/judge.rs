@@ -46,6 +46,9 @@ const REPEAT_US: u64 = 63_000_000;
 /// A firm press counts within this time, µs: a filter of six samples at 100 a second, and what is between.
 const COUNTS_US: u64 = 120_000;
 
+/// A finger that stayed counts again within this time, µs.
+const STAYS_US: u64 = 1_700_000;
+
 /// An invariant that broke, and what was seen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Broken {
@@ -92,6 +95,11 @@ impl Judge {
         if self.causes.have_passed(now) {
             self.promise = Some(now.plus_us(COUNTS_US));
         }
+    }
+
+    /// A finger that held something stayed while the pad was not heard. It counts again, once what came late is read.
+    pub(super) fn stay(&mut self, now: HostInstant) {
+        self.promise = Some(now.plus_us(STAYS_US));
     }
 
     /// Something other than the pad's own fault is in the way of what was promised.

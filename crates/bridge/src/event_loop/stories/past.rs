@@ -374,3 +374,10 @@ fn a_pad_that_begins_anew_while_its_clock_is_in_doubt_is_not_accused_of_the_jump
     let anew = Restart { time_us: 4_292_932_878, is_flagged: false, offset: -177_586, text: 0 };
     holds(&[&begun[..], &[(86, Keep(false)), (1_518, anew), (348, Lift), (3_000, Mend)]].concat());
 }
+
+#[test]
+fn a_channel_that_stood_while_the_zero_of_a_slow_pad_was_measured_is_not_accused_when_it_answers() {
+    let anew = Restart { time_us: 0, is_flagged: true, offset: 10_665, text: 0 };
+    let begun = [(0, Rate(200)), (0, PLUG_IN), (0, Off(4, Stuck)), (2_542, anew)];
+    holds(&[&begun[..], &[(1_000, Event::Cure), (386, Lift), (3_000, Mend)]].concat());
+}

@@ -90,6 +90,8 @@ pub(super) struct World {
     is_zero_old: bool,
     /// The zero was measured, or may have been, under the finger that is there.
     is_zero_under: bool,
+    /// The finger held something down when the pad was not heard any more, and stays.
+    is_staying: bool,
     port: PortState,
     frozen_until: Option<HostInstant>,
     /// It has not come to run for so long.
@@ -144,6 +146,7 @@ impl World {
             was_off: [false; 9],
             is_zero_old: false,
             is_zero_under: false,
+            is_staying: false,
             port: PortState::Free,
             frozen_until: None,
             frozen_us: 0,
@@ -484,7 +487,21 @@ impl World {
     /// Something is over in a moment, and the zero may be measured anew.
     fn note_moment(&mut self) {
         self.note_break();
+        self.is_staying = false;
         self.is_zero_under |= self.contact.fz_n > 0.0;
+    }
+
+    /// The pad is not heard from here on.
+    fn wait_begins(&mut self) {
+        let is_held = self.play.bridge.driver.pipeline.held().next().is_some();
+        self.is_staying = self.contact == RIGHT && is_held && self.judge.causes.have_passed(self.play.now);
+    }
+
+    /// It is heard again: a finger that has stayed counts again.
+    fn wait_ends(&mut self) {
+        if std::mem::take(&mut self.is_staying) {
+            self.judge.stay(self.play.now);
+        }
     }
 
     /// Something is over in a moment.

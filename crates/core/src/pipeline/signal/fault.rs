@@ -73,6 +73,12 @@ impl ChannelFaults {
         self.noisy_pad = 2 * lively > self.channels;
     }
 
+    /// Whether a channel is stuck that has read the same for more than so many samples.
+    pub fn is_stuck_for_more_than(&self, samples: u32) -> bool {
+        let mut channels = self.stuck.iter().zip(self.unchanged);
+        channels.any(|(stuck, unchanged)| *stuck && u32::from(unchanged) > samples)
+    }
+
     /// What was seen so far was no rest: what changed need not have been noise.
     pub fn forget_rest(&mut self) {
         (self.seen, self.changes) = (0, [0; CHANNELS]);

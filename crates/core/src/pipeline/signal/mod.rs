@@ -83,18 +83,10 @@ pub struct Signal {
     faults: ChannelFaults,
     filter: MeanFilter,
     tare: Tare,
-    /// How sound the channels were when the zero was measured.
-    zero: MeasuredZero,
-}
-
-/// How sound the channels were when the zero was measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum MeasuredZero {
-    /// The next sample will tell: only from what they do at rest is it known which of them are noisy.
-    Untried,
-    Whole,
-    /// A channel did not answer then. Once it does, its zero is not known, nor whether the others' was a load.
-    Partial,
+    /// Samples since the zero was measured.
+    zero_age: u32,
+    /// A channel did not answer while it was. Once it does, its zero is not known, nor whether the others' was a load.
+    is_zero_partial: bool,
 }
 
 impl Signal {
@@ -109,7 +101,8 @@ impl Signal {
             faults: ChannelFaults::new(channels, is_clamped),
             filter: MeanFilter::new(filter_samples),
             tare: Tare::new(channels < CHANNELS),
-            zero: MeasuredZero::Whole,
+            zero_age: 0,
+            is_zero_partial: false,
         }
     }
 
@@ -165,12 +158,12 @@ impl Signal {
         health: &mut Health,
     ) -> Conditioned {
         let is_faulty = self.faults.check(sample, self.scale.count_bits, health);
-        let zero = std::mem::replace(&mut self.zero, MeasuredZero::Whole);
+        self.zero_age = self.zero_age.saturating_add(1);
         if is_faulty {
-            self.zero = if zero == MeasuredZero::Whole { zero } else { MeasuredZero::Partial };
+            self.is_zero_partial |= self.faults.is_stuck_for_more_than(self.zero_age);
             return Conditioned::Faulty;
         }
-        if zero == MeasuredZero::Partial {
+        if std::mem::take(&mut self.is_zero_partial) {
             self.tare = Tare::new(self.channels < CHANNELS);
             self.faults.forget_rest();
         }
@@ -210,7 +203,7 @@ impl Signal {
         }
         if self.tare.is_known() {
             self.faults.learn();
-            self.zero = MeasuredZero::Untried;
+            self.zero_age = 0;
         }
     }
 }

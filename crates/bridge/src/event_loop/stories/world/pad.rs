@@ -48,6 +48,7 @@ impl World {
             Event::Stall(true) => {
                 if !std::mem::replace(&mut self.is_stalled, true) {
                     self.stalled_from = play.now;
+                    self.wait_begins();
                 }
             }
             Event::Stall(false) => {
@@ -58,6 +59,7 @@ impl World {
             }
             Event::Keep(true) => {
                 if self.kept.is_none() {
+                    self.wait_begins();
                     (self.kept, self.kept_from) = (Some(Vec::new()), self.play.now);
                 }
             }
@@ -108,7 +110,12 @@ impl World {
         }
         match event {
             // Over a silence the zero stays, and with it what lies there.
-            Event::Stall(_) | Event::Keep(_) => self.note_break(),
+            Event::Stall(begins) | Event::Keep(begins) => {
+                self.note_break();
+                if !begins && !self.is_stalled && self.kept.is_none() {
+                    self.wait_ends();
+                }
+            }
             _ => self.note_moment(),
         }
         if matches!(event, Event::Lose(_)) {

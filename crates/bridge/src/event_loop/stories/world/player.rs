@@ -8,6 +8,7 @@ impl World {
         let was_touched = std::mem::replace(&mut self.contact, contact).fz_n > 0.0;
         let is_touched = contact.fz_n > 0.0;
         self.is_zero_old &= is_touched;
+        self.is_staying = false;
         let begins_early = !was_touched && !self.judge.causes.have_passed(self.play.now);
         self.is_zero_under = is_touched && (self.is_zero_under || begins_early);
         self.judge.excuse();

@@ -244,8 +244,8 @@ impl Judge {
         let Some(finding) = finding.filter(|_| lasts) else { return Ok(()) };
         let messages = play.messages.0.lock().unwrap();
         let is_recent = |at: &HostInstant| now.us_since(*at) <= REPEAT_US;
-        // A warning takes back no finding.
-        let last = messages.iter().rfind(|line| is_state(line) || is_found(line) && !line.contains(STRAY));
+        // A warning takes back no finding, and no state does.
+        let last = messages.iter().rfind(|line| is_found(line) && !line.contains(STRAY));
         let recent = messages.iter().zip(&self.told).filter(|(_, at)| is_recent(at)).map(|(line, _)| line);
         if recent.chain(last).any(|line| is_of_kind(line, finding)) {
             return Ok(());

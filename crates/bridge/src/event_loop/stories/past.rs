@@ -381,3 +381,13 @@ fn a_channel_that_stood_while_the_zero_of_a_slow_pad_was_measured_is_not_accused
     let begun = [(0, Rate(200)), (0, PLUG_IN), (0, Off(4, Stuck)), (2_542, anew)];
     holds(&[&begun[..], &[(1_000, Event::Cure), (386, Lift), (3_000, Mend)]].concat());
 }
+
+#[test]
+fn an_old_frame_while_the_zero_is_measured_is_no_load() {
+    let anew = |time_us, is_flagged, offset| Restart { time_us, is_flagged, offset, text: 0 };
+    let again = Repeat { age: 500, frames: 3 };
+    let begun = [(0, PLUG_IN), (1, anew(4_294_022_087, true, 116_215)), (0, anew(0, true, -259_762))];
+    holds(&[&begun[..], &[(1, again), (513, anew(4_293_000_957, false, 397_728)), (0, Mend)]].concat());
+    let slow = [(0, Rate(100)), (0, PLUG_IN), (20, anew(18_446_744_073_709_345_948, true, 347_611))];
+    holds(&[&slow[..], &[(213, again), (481, Touch(RIGHT)), (0, Mend)]].concat());
+}

@@ -249,12 +249,13 @@ impl Tare {
         let floor_uv = self.lower_floor(at, block_uv, &load_n);
         let is_lowest =
             |uv: &[f64; CHANNELS]| floor_uv.is_some_and(|floor| load_n(&relative(uv, &floor)) <= SAME_N);
-        if let Some(mean_uv) = self.stillness.mean_uv().filter(is_lowest) {
+        if let Some(mean_uv) = self.stillness.mean_uv().filter(|mean_uv| is_lowest(mean_uv)) {
             self.zero_uv = Some(std::array::from_fn(|k| mean_uv[k] - rest.uv[k]));
             self.doubt_uv = rest.doubt_uv;
             self.followed_at = at;
             (self.block_uv, self.floor, self.loaded) = (None, None, false);
-        } else if self.stillness.is_full() {
+        } else if self.stillness.is_full() && !is_lowest(block_uv) {
+            // What does not lie still, but as low as ever, may be the pad itself, after a frame of another time.
             self.loaded = true;
         }
         self.stillness.has_just_moved()

@@ -136,22 +136,21 @@ impl World {
 
     pub(super) fn cure(&mut self) {
         self.is_zero_old |= self.off.iter().any(Option::is_some) && self.contact.fz_n > 0.0;
-        let was_in_zero =
-            self.off.iter().zip(self.is_dead_at_zero).any(|(off, is_dead)| off.is_some() && !is_dead);
-        if !was_in_zero && self.is_heard_by_now() {
+        let mut off = self.off.iter().zip(self.is_dead_at_zero).filter(|(off, _)| off.is_some()).peekable();
+        let are_dead = off.peek().is_some() && off.all(|(_, is_dead)| is_dead);
+        if are_dead && self.is_heard_by_now() {
             self.judge.answer(self.play.now);
         }
         (self.off, self.dead_since) = ([None; 9], [None; 9]);
         self.wire();
     }
 
-    /// Whether the bridge hears the pad, nobody has touched it for long, and its zero is known.
+    /// Whether the bridge hears the pad, knows of what is off, and nobody has touched it for long.
     fn is_heard_by_now(&self) -> bool {
         let is_heard =
             self.is_plugged && !self.is_stalled && self.kept.is_none() && self.frozen_until.is_none();
-        is_heard
-            && self.judge.is_untouched(self.play.now)
-            && self.play.bridge.driver.pipeline.phase() != Phase::Taring
+        let is_known = self.play.bridge.driver.pipeline.phase() == Phase::Faulty;
+        is_heard && is_known && self.judge.is_untouched(self.play.now)
     }
 
     /// Lays the pad's wires as they are now.

@@ -283,6 +283,8 @@ impl Draw {
             Event::Off(_, Off::Saturated | Off::Stuck) => {
                 vec![later(1_000, 3_000, restart), later(300, 3_000, Event::Cure)]
             }
+            // One whose wire is loose is so then, too.
+            Event::Off(_, Off::Drift { .. } | Off::Rail { .. }) => vec![later(0, 500, restart)],
             Event::Keep(true) => vec![later(0, 3_000, Event::Keep(false))],
             Event::Stall(true) => vec![later(0, 3_000, Event::Stall(false))],
             _ => Vec::new(),

@@ -313,9 +313,14 @@ impl Judge {
             // It goes on after something hid it.
             self.causes.note(now, Cause::Weighing);
         }
+        let finding = play.bridge.driver.pipeline.line_finding().copied();
+        let finding = finding.filter(|finding| self.is_true(play, finding));
         let messages = play.messages.0.lock().unwrap();
         for line in &messages[self.told.len()..] {
             self.told.push(now);
+            if finding.is_some_and(|finding| is_of_kind(line, &finding)) {
+                continue;
+            }
             let state = STATES.iter().find(|state| state.sentence() == line);
             let is_state_untrue = state.is_some_and(|state| !self.causes.explain(now, NAMED_US, *state));
             // It is about the stream as it was heard last. A stray channel stays one until a finger shows that it is none.

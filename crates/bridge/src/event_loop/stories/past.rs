@@ -391,3 +391,10 @@ fn an_old_frame_while_the_zero_is_measured_is_no_load() {
     let slow = [(0, Rate(100)), (0, PLUG_IN), (20, anew(18_446_744_073_709_345_948, true, 347_611))];
     holds(&[&slow[..], &[(213, again), (481, Touch(RIGHT)), (0, Mend)]].concat());
 }
+
+#[test]
+fn a_number_of_few_bits_hides_no_clock_that_is_set_anew() {
+    let anew = Restart { time_us: 4_294_679_742, is_flagged: false, offset: 385_951, text: 0 };
+    let begun = [(0, PLUG_IN), (0, Rate(4_000)), (1_000, Event::SequenceBits(8)), (2_000, Damage(2))];
+    holds(&[&begun[..], &[(0, anew), (2_000, Mend)]].concat());
+}

@@ -34,7 +34,7 @@ pub(super) struct StreamClock {
     burst_parts: usize,
     /// Whether the last look found that the pad's clock counts microseconds.
     is_on_pace: bool,
-    /// Whether the newest sample does not go on from the one before by the pad's clock. One whose pace is in doubt may.
+    /// Whether the pad's clock does not go on from the sample before the newest one. One whose pace is in doubt may.
     pub(super) has_jumped: bool,
 }
 
@@ -103,7 +103,7 @@ impl StreamClock {
     ) -> bool {
         let stream_us = device_us.wrapping_add(self.offset_us);
         let smooth = stream_us > self.last.as_us() && stream_us - self.last.as_us() <= GAP_MAX_US;
-        self.has_jumped = continues && !smooth;
+        self.has_jumped = !smooth;
         // What a host takes late says nothing of the pace.
         if !continues || !smooth || now.us_since(self.heard) > GAP_MAX_US {
             self.look_anew(now, device_us, delay_us);

@@ -186,8 +186,10 @@ impl Link {
         let is_next = matches!(event, LinkEvent::Sample { .. });
         let arrival = Arrival {
             lost: u32::try_from(health.frames_lost - before.frames_lost).unwrap_or(u32::MAX),
-            // Whatever fault is told of it.
-            breaks: is_next && self.clock.has_jumped || health.restarts != before.restarts,
+            // A number that begins again may be all of it, or a pace that is in doubt.
+            breaks: is_next
+                && self.clock.has_jumped
+                && (health.time_jumps, health.restarts) != (before.time_jumps, before.restarts),
             delay_us: is_next.then_some(delay_us),
         };
         self.check.sample(now, &reading, arrival);

@@ -81,6 +81,8 @@ impl World {
                     self.judge.excuse();
                     return Ok(());
                 }
+                // One that looks like the first of a run seems to have lost those up to the next.
+                self.judge.causes.note(self.play.now, Cause::Loss);
             }
             Event::ClockJump(time_us) => {
                 self.doubt_clock();

@@ -69,6 +69,7 @@ const FILES: &[(&str, &str)] = &files![
     "text.js",
     "trace.js",
     "values.js",
+    "words.js",
 ];
 
 /// Answers `GET /`.

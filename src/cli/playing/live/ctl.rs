@@ -175,8 +175,9 @@ fn print_status(status: &Value) -> io::Result<()> {
     }
     writeln!(out, "decoder  {}", text("decoder"))?;
     writeln!(out, "output   {}", text("output"))?;
-    let held = status.get("held").and_then(Value::as_array).into_iter().flatten();
-    writeln!(out, "held     {}", held.filter_map(Value::as_str).collect::<Vec<_>>().join(" "))?;
+    let held = status.get("held_names").and_then(Value::as_array).into_iter().flatten();
+    let held: Vec<_> = held.filter_map(Value::as_str).map(printable).collect();
+    writeln!(out, "held     {}", held.join("   "))?;
     if let Some(warning) = warning(status) {
         writeln!(out, "warning  {warning}")?;
     }

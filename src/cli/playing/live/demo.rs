@@ -9,7 +9,6 @@ use serde::Serialize;
 use super::chosen;
 use super::displays::DisplayOptions;
 use super::files::Files;
-use super::newest::line;
 use super::output::{Output, log_to};
 use super::playing::{Audience, TerminalHost, microseconds, open_virtual, play, requests};
 use super::screen::Screen;
@@ -266,7 +265,7 @@ fn start_screen(title: String, bridge: &Bridge, seen: &Arc<Mutex<RecordedEvents>
     let seen = Arc::clone(seen);
     Screen::start(title, bridge.snapshot(), move || {
         let newest = seen.lock().map(|seen| seen.newest.clone());
-        newest.unwrap_or_default().iter().map(line).collect()
+        newest.unwrap_or_default().into_iter().collect()
     })
 }
 

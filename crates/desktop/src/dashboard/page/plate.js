@@ -7,11 +7,6 @@ const FAR_MM = 80;
 const NAME_MM = 23;
 let plates = 0;
 
-/** "up", "up + right", or "keeps the last" where a sector has no direction of its own. */
-function sectorName(directions) {
-  return directions.length === 0 ? "keeps" : directions.join(" + ");
-}
-
 export class Plate {
   /** @param {string} label what the picture shows, for those who do not see it */
   constructor(label) {
@@ -38,21 +33,21 @@ export class Plate {
     sketch.zones.forEach((zone) => this.#drawZone(centre, zone));
     if (sketch.pointer) this.#drawPair(centre, sketch.pointer.centre_radius_mm, sketch.pointer.full_radius_mm, "pointer");
     for (const stick of sketch.sticks) {
-      if (stick.from === "place") this.#drawPair(centre, stick.centre, stick.full, `${stick.stick} stick`);
+      if (stick.from === "place") this.#drawPair(centre, stick.centre, stick.full, stick.word);
     }
     this.#drawCentre(centre);
   }
 
   #drawDirections(centre, dpad) {
     for (const [index, sector] of dpad.sectors.entries()) {
-      const { from_deg, to_deg, directions } = sector;
+      const { from_deg, to_deg, directions, word } = sector;
       const kind = directions.length === 1 ? "plain" : "diagonal";
       this.layers.sectors.append(svg("path", {
         class: `sector ${kind}`,
         d: sectorPath(centre, from_deg, to_deg, dpad.centre_radius_mm, FAR_MM),
         "data-sector": index,
       }));
-      this.#name(centre, middleDeg(from_deg, to_deg), NAME_MM, sectorName(directions));
+      this.#name(centre, middleDeg(from_deg, to_deg), NAME_MM, word);
     }
     this.#ring(centre, dpad.centre_radius_mm, "starts");
     this.#ring(centre, dpad.release_radius_mm, "ends");

@@ -196,6 +196,9 @@ fn a_control_is_named_and_seen_by_that_name() {
             "{words}"
         );
     }
+    browser.run("window.print = () => { window.printed = true; }");
+    browser.click("#print");
+    browser.wait("window.printed && document.querySelector('#sheet > svg').textContent.includes('A: hop')");
     browser.view("live");
     finger.press(0.0, 3.0, 3.0);
     browser.wait("document.querySelector('#live .chips').innerText.includes('A: hop')");

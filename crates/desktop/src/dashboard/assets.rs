@@ -62,6 +62,7 @@ const FILES: &[(&str, &str)] = &files![
     "schema.js",
     "screen.js",
     "settings.js",
+    "sheet.js",
     "socket.js",
     "status.js",
     "style.css",

@@ -122,6 +122,7 @@ fn router(app: Arc<AppState>, guard: Arc<Guard>) -> Router {
         .route("/api/draft", post(api::draft))
         .route("/api/preview", post(api::preview).delete(api::end_preview))
         .route("/api/rewind", post(api::rewind))
+        .route("/api/sheet", post(api::profile_sheet))
         .route("/api/doctor", get(api::doctor))
         .route("/api/reports", get(api::reports))
         .route("/api/guides", get(api::guides))

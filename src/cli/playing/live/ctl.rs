@@ -14,6 +14,7 @@ use super::left_keys;
 use super::runtime::{BridgeName, socket_path};
 use super::sound::{Sounds, Which};
 use crate::cli::failure::Failure;
+use crate::cli::number;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::{printable, stdout};
 use tactpad::bridge::control::watch;
@@ -64,7 +65,7 @@ enum Action {
     #[command(after_help = "Example: tactpad ctl weigh 200")]
     Weigh {
         /// The weight, in grams.
-        #[arg(value_name = "GRAMS", allow_hyphen_values = true)]
+        #[arg(value_name = "GRAMS", value_parser = number::grams, allow_hyphen_values = true)]
         grams: f64,
     },
     /// Go over to another profile.

@@ -12,6 +12,7 @@ use std::time::Duration;
 use rustix::termios::tcgetwinsize;
 
 use tactpad::bridge::snapshot::{BridgeHealth, Snapshot, Status};
+use tactpad::counted::counted;
 use tactpad::pipeline::control::names::HAT_AXES;
 use tactpad::pipeline::control::{Code, OutputEvent};
 use tactpad::pipeline::mapping::plain::named;
@@ -185,7 +186,10 @@ fn facts(seen: &Snapshot, events: &[OutputEvent]) -> Vec<String> {
     let unusable = profile_error.as_ref().and_then(|error| error.lines().next());
     facts.extend(unusable.map(|error| format!("! {error}: see `tactpad ctl status`")));
     facts.extend(warning.map(|warning| format!("! {warning}")));
-    facts.extend((drops.groups_dropped > 0).then(|| format!("! {} groups not logged", drops.groups_dropped)));
+    facts.extend(
+        (drops.groups_dropped > 0)
+            .then(|| format!("! {} not logged", counted(drops.groups_dropped, "group"))),
+    );
     facts.extend(events.iter().rev().take(ROWS.saturating_sub(facts.len())).map(|event| line(event, labels)));
     facts
 }

@@ -1,4 +1,4 @@
-//! `tactpad profile`: list, show, check, new, edit; history, restore, delete, rename; export, import.
+//! `tactpad profile`: list, show, sheet, check, new, edit; history, restore, delete, rename; export, import.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -58,6 +58,15 @@ enum Action {
         /// Say in plain words what each press does, with which forces and times.
         #[arg(long)]
         plain: bool,
+    },
+    /// Make a sheet of one page: the plate with its zones, what each press does, how it fits the hand, the date. It prints on A4 and Letter.
+    #[command(after_help = "Example: tactpad profile sheet contra --out contra.pdf")]
+    Sheet {
+        /// A name from `profile list`, or a file.
+        profile: String,
+        /// The file, by its end .html, .svg or .pdf; without it the page is printed as HTML.
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
     },
     /// Say everything that is wrong with a profile.
     #[command(after_help = "Example: tactpad profile check my-contra.toml")]
@@ -155,6 +164,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Show { profile, plain: false } => {
             Ok(stdout().write_all(chosen::find(profile)?.text.as_bytes())?)
         }
+        Action::Sheet { profile, out } => plain::sheet(profile, out.as_deref()),
         Action::Check { profile, json } => verdict::run(profile, *json),
         Action::New { name, save } => new::new(name, *save),
         Action::Edit { name } => new::edit(name),

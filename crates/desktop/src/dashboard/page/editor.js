@@ -13,6 +13,7 @@ import { ProfileHistory } from "./profile_history.js";
 import { Rewind } from "./rewind.js";
 import { askConflict, askDrop, askName, readProfile, writeProfile } from "./saving.js";
 import { Schema } from "./schema.js";
+import { printSheet } from "./sheet.js";
 import { TextPane, plural } from "./text.js";
 import { Values } from "./values.js";
 
@@ -59,7 +60,7 @@ export class ProfileView {
     this.message = el("p", { class: "editor-message", role: "status" });
     this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
       el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert,
-      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), el("label", { class: "check main" }, this.live, "Play the draft live"), this.state, this.message));
+      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), button("Print …", () => this.#print(), { id: "print", class: "main" }), el("label", { class: "check main" }, this.live, "Play the draft live"), this.state, this.message));
   }
 
   /** Makes what needs the schema, once. */
@@ -289,6 +290,10 @@ export class ProfileView {
     const answer = await askConflict();
     if (answer === "theirs") await this.#load(name);
     if (answer === "overwrite") await this.#write(name, (await readProfile(name)).version);
+  }
+
+  async #print() {
+    await printSheet(this.draft.text).catch((error) => this.#tell(`Not printed: ${error.message}`));
   }
 
   async #saveAs() {

@@ -56,6 +56,11 @@ fn directions(profile: &Profile) -> Vec<Part> {
         said("dpad.release_force_n", dpad.release_force_n.into())
     );
     let keys = [&dpad.up, &dpad.down, &dpad.left, &dpad.right];
+    let is_named = |it: &Direction| profile.labels.of(Labelled::Direction(*it)).is_some();
+    if !Direction::ALL.iter().any(is_named) {
+        let gives = keys.map(controls::all_of).join(", ");
+        return vec![Part { hand: "touch above, below, left, right of the middle".into(), gives, numbers }];
+    }
     let one = |(direction, keys): (Direction, _)| {
         let label = profile.labels.of(Labelled::Direction(direction));
         Part {

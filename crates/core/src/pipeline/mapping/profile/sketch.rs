@@ -74,8 +74,10 @@ pub struct SectorOutline {
     pub to_deg: f32,
     /// The names of the directions.
     pub directions: Vec<&'static str>,
-    /// What people read there.
+    /// What people read there,
     pub word: String,
+    /// at this place of the plate.
+    pub word_at_mm: [f32; 2],
 }
 
 /// A zone as it is drawn.
@@ -91,6 +93,8 @@ pub struct ZoneSketch {
     pub inner_radius_mm: f32,
     /// It ends at this one.
     pub outer_radius_mm: f32,
+    /// Its name stands at this place of the plate.
+    pub name_at_mm: [f32; 2],
 }
 
 /// The pointer's rings.
@@ -106,6 +110,8 @@ pub struct PointerRings {
     pub min_force_n: f32,
     /// See [`Pointer::release_force_n`].
     pub release_force_n: f32,
+    /// Its name stands at this place of the plate.
+    pub word_at_mm: [f32; 2],
 }
 
 /// From where to where a stick moves.
@@ -119,8 +125,10 @@ pub struct StickReach {
     pub centre: f32,
     /// From here on it is at its end.
     pub full: f32,
-    /// What people read of it.
+    /// What people read of it,
     pub word: String,
+    /// at this place of the plate, where the place moves it.
+    pub word_at_mm: [f32; 2],
 }
 
 /// From where to where a trigger moves.
@@ -189,8 +197,8 @@ impl Sketch {
             centre_mm: profile.centre_mm,
             filter_samples: profile.filter_samples,
             dpad: profile.dpad.as_ref().map(|dpad| DpadSketch::of(dpad, profile)),
-            zones: profile.zones.iter().map(ZoneSketch::of).collect(),
-            pointer: profile.pointer.as_ref().map(PointerRings::of),
+            zones: profile.zones.iter().map(|it| ZoneSketch::of(it, profile.centre_mm)).collect(),
+            pointer: profile.pointer.as_ref().map(|it| PointerRings::of(it, profile.centre_mm)),
             sticks: profile.sticks.iter().map(|it| StickReach::of(it, profile)).collect(),
             triggers: profile.triggers.iter().map(|it| TriggerForces::of(it, profile)).collect(),
             buttons: (1..)
@@ -200,6 +208,36 @@ impl Sketch {
             labels: named::labels(profile),
         }
     }
+}
+
+/// Radius of the plate that profiles count on.
+pub const PLATE_MM: f32 = 30.0;
+/// The word of a direction stands so far from the hand's centre,
+const DIRECTION_MM: f32 = 23.0;
+/// and where directions begin too far out for that, beside the plate.
+const OUTSIDE_MM: f32 = 32.0;
+/// Between up and the diagonal.
+const RING_WORD_DEG: f32 = 60.0;
+/// The name of a zone stands so far from its inner edge at most, where the words of directions leave room.
+const ZONE_NAME_MM: f32 = 3.5;
+
+/// A place by its angle and its distance from a centre.
+pub fn polar(centre_mm: [f32; 2], deg: f32, radius_mm: f32) -> [f32; 2] {
+    let (sin, cos) = libm::sincosf(deg.to_radians());
+    [centre_mm[0] + radius_mm * cos, centre_mm[1] + radius_mm * sin]
+}
+
+/// The same, so far within the plate that a word has room.
+fn on_plate(centre_mm: [f32; 2], deg: f32, radius_mm: f32) -> [f32; 2] {
+    let [x_mm, y_mm] = polar(centre_mm, deg, radius_mm);
+    let far_mm = libm::hypotf(x_mm, y_mm);
+    let share = if far_mm > PLATE_MM - 5.0 { (PLATE_MM - 5.0) / far_mm } else { 1.0 };
+    [x_mm * share, y_mm * share]
+}
+
+/// Where the word of a ring stands.
+fn beside_ring(centre_mm: [f32; 2], radius_mm: f32) -> [f32; 2] {
+    on_plate(centre_mm, RING_WORD_DEG, radius_mm - 2.2)
 }
 
 impl DpadSketch {
@@ -229,32 +267,51 @@ impl SectorOutline {
             [direction] => named::direction(profile, direction),
             _ => held.iter().map(|it| it.name()).collect::<Vec<_>>().join(" + "),
         };
-        Self { from_deg, to_deg, directions: held.into_iter().map(Direction::name).collect(), word }
+        let deg = from_deg + 0.5 * (to_deg - from_deg).rem_euclid(360.0);
+        let starts_mm = profile.dpad.as_ref().map_or(0.0, |dpad| dpad.centre_radius_mm);
+        let word_at_mm = if starts_mm > DIRECTION_MM - 2.0 {
+            polar(profile.centre_mm, deg, OUTSIDE_MM)
+        } else {
+            on_plate(profile.centre_mm, deg, DIRECTION_MM)
+        };
+        let directions = held.into_iter().map(Direction::name).collect();
+        Self { from_deg, to_deg, directions, word, word_at_mm }
     }
 }
 
 impl ZoneSketch {
-    fn of(zone: &Zone) -> Self {
+    fn of(zone: &Zone, centre_mm: [f32; 2]) -> Self {
         let edges = (zone.half_width_deg < 180.0)
             .then_some((zone.middle_deg - zone.half_width_deg, zone.middle_deg + zone.half_width_deg));
+        let middle_mm = (zone.inner_radius_mm + zone.outer_radius_mm.min(PLATE_MM - 3.0)) / 2.0;
+        let (deg, radius_mm) = match edges {
+            Some(_) if zone.inner_radius_mm > 0.0 => {
+                (zone.middle_deg, middle_mm.min(zone.inner_radius_mm + ZONE_NAME_MM))
+            }
+            Some(_) => (zone.middle_deg, middle_mm),
+            None if zone.inner_radius_mm == 0.0 => (90.0, 0.0),
+            None => (90.0, middle_mm),
+        };
         Self {
             name: zone.name.clone(),
             from_deg: edges.map(|(from_deg, _)| from_deg),
             to_deg: edges.map(|(_, to_deg)| to_deg),
             inner_radius_mm: zone.inner_radius_mm,
             outer_radius_mm: zone.outer_radius_mm,
+            name_at_mm: on_plate(centre_mm, deg, radius_mm),
         }
     }
 }
 
 impl PointerRings {
-    fn of(pointer: &Pointer) -> Self {
+    fn of(pointer: &Pointer, centre_mm: [f32; 2]) -> Self {
         Self {
             mode: word(&POINTER_MODES, &pointer.mode),
             centre_radius_mm: pointer.centre_radius_mm,
             full_radius_mm: pointer.full_radius_mm,
             min_force_n: pointer.min_force_n,
             release_force_n: pointer.release_force_n,
+            word_at_mm: beside_ring(centre_mm, pointer.full_radius_mm),
         }
     }
 }
@@ -267,6 +324,7 @@ impl StickReach {
             centre: stick.rest,
             full: stick.full,
             word: named::stick(profile, stick.side),
+            word_at_mm: beside_ring(profile.centre_mm, stick.full),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a profile's parts do in the game, as a person named it.
 
-use crate::pipeline::mapping::profile::words::{SIDES, word};
-use crate::pipeline::mapping::profile::{Direction, Labelled, Labels, Role, Side};
+use crate::pipeline::mapping::profile::words::SIDES;
+use crate::pipeline::mapping::profile::{Direction, Labelled, Labels, Role};
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::Section;
 
@@ -22,13 +22,14 @@ pub(crate) fn read(root: &Section<'_>, findings: &mut Findings<'_>) -> Labels {
             effects.iter().for_each(|it| labels.add(Labelled::Press(index, role), it.name(LABEL, findings)));
         }
     }
-    let parts: [(&str, fn(Side) -> Labelled); 2] =
-        [("stick", Labelled::Stick), ("trigger", Labelled::Trigger)];
-    for (kind, part) in parts {
+    for kind in ["stick", "trigger"] {
         for table in root.inner(kind) {
-            let side = [Side::Left, Side::Right].into_iter().find(|it| table.word_is(kind, word(&SIDES, it)));
             let label = table.name(LABEL, findings);
-            side.into_iter().for_each(|side| labels.add(part(side), label));
+            let side = SIDES.iter().find(|(word, _)| table.word_is(kind, word));
+            if let Some((_, side)) = side {
+                let part = if kind == "stick" { Labelled::Stick(*side) } else { Labelled::Trigger(*side) };
+                labels.add(part, label);
+            }
         }
     }
     labels

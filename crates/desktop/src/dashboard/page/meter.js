@@ -4,8 +4,8 @@ import { el, number, say } from "./dom.js";
 
 const FORCES = [
   { axis: "fz", name: "Press", meaning: "into the plate, Fz", sides: 1, least_n: 4 },
-  { axis: "fx", name: "Push sideways", meaning: "− left, + right, Fx", sides: 2, least_n: 2 },
-  { axis: "fy", name: "Push up and down", meaning: "− down, + up, Fy", sides: 2, least_n: 2 },
+  { axis: "fx", name: "Push right", meaning: "− is left, Fx", sides: 2, least_n: 2 },
+  { axis: "fy", name: "Push up", meaning: "− is down, Fy", sides: 2, least_n: 2 },
 ];
 
 /** The shapes of thresholds; a name stands beside each, so that none is told by its look alone. */

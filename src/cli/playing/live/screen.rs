@@ -194,16 +194,16 @@ fn facts(seen: &Snapshot, events: &[OutputEvent]) -> Vec<String> {
     facts
 }
 
-/// An event: `3.214 s  A: jump, down`.
+/// An event: `3.214 s  A: jump, pressed`.
 fn line(event: &OutputEvent, labels: &BTreeMap<String, String>) -> String {
     let OutputEvent { at, device, code, value } = *event;
     let called = |value| named::control(labels, device, code, value);
     let told = match code {
-        Code::Key(_) => format!("{}, {}", called(1), if value == 0 { "up again" } else { "down" }),
+        Code::Key(_) => format!("{}, {}", called(1), if value == 0 { "let go" } else { "pressed" }),
         Code::Axis(_) if HAT_AXES.contains(&code) && value == 0 => {
-            format!("{} or {}, up again", called(-1), called(1))
+            format!("{} or {}, let go", called(-1), called(1))
         }
-        Code::Axis(_) if HAT_AXES.contains(&code) => format!("{}, down", called(value)),
+        Code::Axis(_) if HAT_AXES.contains(&code) => format!("{}, pressed", called(value)),
         Code::Axis(_) | Code::Relative(_) => format!("{} {value:+}", called(value)),
     };
     format!("  {:8.3} s  {told}", at.as_us() as f64 * 1e-6)

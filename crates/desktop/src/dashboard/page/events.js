@@ -63,7 +63,7 @@ export class EventLanes {
       if (down) lane.push({ from_us: event.t_us, to_us: null });
       else open.to_us = event.t_us;
       this.#lanes.set(control, lane);
-      this.#tell(event.t_us, control, down ? "down" : "up again");
+      this.#tell(event.t_us, control, down ? "pressed" : "let go");
     }
   }
 

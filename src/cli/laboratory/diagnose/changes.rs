@@ -186,9 +186,14 @@ impl fmt::Display for ChangesText<'_> {
                 format!("{} against {}", counted(later, "press"), decoder.display()),
                 " since it was calibrated",
             ),
-            (Reference::Played, earlier) => {
-                (format!("{} against {} before", counted(later, "press"), earlier.unwrap_or_default()), "")
-            }
+            (Reference::Played, earlier) => (
+                format!(
+                    "{} against {}",
+                    counted(later, "press"),
+                    counted(earlier.unwrap_or_default(), "earlier one")
+                ),
+                "",
+            ),
         };
         let held = format!("{held}, in tenths of a second");
         let least = 100.0 * found.least_module_gain;

@@ -49,7 +49,7 @@
 //! `examples/` has whole programs. `ARCHITECTURE.md` says which rules hold between the crates.
 
 pub use tactpad_core::{
-    firmware_proto, network, pad, pipeline, quantity, source, tables, time, toml_text, virtual_pad,
+    counted, firmware_proto, network, pad, pipeline, quantity, source, tables, time, toml_text, virtual_pad,
 };
 #[cfg(feature = "simulator")]
 pub use tactpad_mechanics as mechanics;

@@ -3,6 +3,7 @@
 mod failure;
 mod files;
 mod laboratory;
+mod number;
 mod paper;
 mod playing;
 mod printing;

@@ -171,6 +171,41 @@ fn undo_and_redo_go_through_all_changes_of_text_and_picture() {
 }
 
 #[test]
+fn a_control_is_named_and_seen_by_that_name() {
+    let finger = Finger::start();
+    let Some((shown, browser)) = editor(&finger) else { return };
+    let write = |field: &str, words: &str| {
+        browser.run(&format!(
+            "const it = document.querySelector('[data-field=\"button.0.out.{field}\"]'); it.value = '{words}'; \
+             it.dispatchEvent(new Event('change', {{ bubbles: true }}))"
+        ));
+    };
+    write("label", "hop");
+    assert!(
+        comes_true(|| text(&browser).contains("keyboard = \"KEY_Z\", label = \"hop\" }")),
+        "{}",
+        text(&browser)
+    );
+    // Words are taken as they are shown, and names of files, too.
+    for (words, written) in
+        [("left bumper", "BTN_TL"), ("Up + x", "ABS_HAT0Y-+BTN_NORTH"), ("BTN_SOUTH", "BTN_SOUTH")]
+    {
+        write("gamepad", words);
+        assert!(
+            comes_true(|| text(&browser).contains(&format!("gamepad = \"{written}\", keyboard = \"KEY_Z\""))),
+            "{words}"
+        );
+    }
+    browser.run("window.print = () => { window.printed = true; }");
+    browser.click("#print");
+    browser.wait("window.printed && document.querySelector('#sheet > svg').textContent.includes('A: hop')");
+    browser.view("live");
+    finger.press(0.0, 3.0, 3.0);
+    browser.wait("document.querySelector('#live .chips').innerText.includes('A: hop')");
+    assert_eq!(shown.status()["held_names"], serde_json::json!(["A: hop"]));
+}
+
+#[test]
 fn a_decimal_comma_is_a_decimal_point_and_with_two_separators_nobody_knows() {
     let finger = Finger::start();
     let Some((_shown, browser)) = editor(&finger) else { return };

@@ -21,10 +21,10 @@ fn the_dot_the_forces_and_what_is_held_follow_the_finger() {
     let Some(browser) = Browser::open(&shown.url) else { return };
     shown.wait_until_playing();
     for (x_mm, y_mm, fz_n, held) in
-        [(15.0, 0.0, 1.0, "ABS_HAT0X"), (0.0, -18.0, 1.0, "ABS_HAT0Y"), (-2.0, 3.0, 3.0, "BTN_SOUTH")]
+        [(15.0, 0.0, 1.0, "right"), (0.0, -18.0, 1.0, "down"), (-2.0, 3.0, 3.0, "A: jump")]
     {
         finger.press(x_mm, y_mm, fz_n);
-        browser.wait(&format!("document.querySelector('#live').innerText.includes('{held}')"));
+        browser.wait(&format!("document.querySelector('#live .chips').innerText.includes('{held}')"));
         let seen = comes_true(|| {
             let at = browser.run("const dot = document.getElementById('contact'); return [Number(dot.getAttribute('cx')), Number(dot.getAttribute('cy'))]");
             let off = |at: &serde_json::Value, mm: f32| (at.as_f64().unwrap_or(99.0) - f64::from(mm)).abs();
@@ -33,7 +33,7 @@ fn the_dot_the_forces_and_what_is_held_follow_the_finger() {
         assert!(seen, "{held}");
     }
     finger.lift();
-    browser.wait("!document.querySelector('#live').innerText.includes('BTN_SOUTH') || document.getElementById('contact')?.closest('[hidden]') !== undefined");
+    browser.wait("!document.querySelector('#live .chips').innerText.includes('A: jump') || document.getElementById('contact')?.closest('[hidden]') !== undefined");
     assert!(comes_true(|| shown.status()["held"].as_array().is_some_and(Vec::is_empty)));
 }
 

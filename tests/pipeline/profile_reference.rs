@@ -13,7 +13,7 @@ fn every_example_of_the_reference_is_a_profile() {
     let text = REFERENCE;
     let examples: Vec<_> =
         text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(examples.len(), 15);
+    assert_eq!(examples.len(), 16);
     for example in examples {
         let whole = if example.contains("schema") { example.to_owned() } else { format!("{HEAD}{example}") };
         let (profile, found) = read(&whole, OutputChoice::AsWritten);

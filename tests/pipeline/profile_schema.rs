@@ -8,6 +8,8 @@ use std::collections::BTreeSet;
 
 use serde_json::{Map, Value, json};
 use tactpad::pipeline::control::names::{GAMEPAD_BUTTONS, HAT_AXES, POINTER_BUTTONS};
+use tactpad::pipeline::mapping::plain::settings::{self, SETTINGS, Unit};
+use tactpad::pipeline::mapping::plain::values::CHOICES;
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
 use tactpad::pipeline::mapping::read::shipped::{self, SCHEMA_LINE};
@@ -325,6 +327,54 @@ fn the_words_of_bindings_are_those_of_the_devices() {
     let wheel = ["REL_WHEEL+", "REL_WHEEL-"].map(str::to_owned);
     let pointer = POINTER_BUTTONS.iter().map(ToString::to_string).chain(wheel);
     assert_eq!(listed("pointer_button"), pointer.collect());
+}
+
+/// A place as the plain words have it: numbers of tables in lists are left out, and a button's kinds of press are one.
+fn plain_place(place: &[String]) -> String {
+    place.iter().filter(|step| *step != ITEM).map(String::as_str).collect::<Vec<_>>().join(".")
+}
+
+#[test]
+fn every_setting_has_a_plain_word_and_a_unit_or_says_why_none() {
+    let keys: Vec<_> = keys().into_iter().filter(|(.., said)| *said != json!(false)).collect();
+    for (place, _, said) in &keys {
+        let name = plain_place(place);
+        let setting = settings::find(&name).unwrap_or_else(|| panic!("{name} has no plain word"));
+        let is_number = matches!(said.get("type").and_then(Value::as_str), Some("number" | "integer"));
+        assert_eq!(setting.unit != Unit::NoNumber, is_number, "{name}: {:?}", setting.unit);
+        for word in words(said.get("enum").or_else(|| said["anyOf"][0].get("enum")).unwrap_or(&Value::Null)) {
+            let is_control = ["gamepad", "keyboard", "pointer", "up", "down", "left", "right"];
+            let is_control =
+                name != "output" && is_control.iter().any(|end| name.ends_with(&format!(".{end}")));
+            let is_told = CHOICES.iter().any(|(place, words)| {
+                settings::find(&name).is_some_and(|it| it.place == *place)
+                    && words.iter().any(|(it, _)| *it == word)
+            });
+            assert!(is_told || is_control, "{name} = {word:?} has no plain word");
+        }
+    }
+    for setting in SETTINGS {
+        let is_there = keys.iter().any(|(place, ..)| {
+            settings::find(&plain_place(place)).is_some_and(|it| it.place == setting.place)
+        });
+        assert!(is_there, "{} is no setting of a profile", setting.place);
+    }
+}
+
+#[test]
+fn descriptions_name_no_key_and_no_code_of_the_kernel() {
+    let keys = keys();
+    let is_key = |word: &str| word.contains('_') && keys.iter().any(|(_, key, _)| key == word);
+    let bindings = ["gamepad", "keyboard", "pointer", "up", "down", "left", "right"];
+    for (place, key, said) in &keys {
+        let description = said.get("description").and_then(Value::as_str).unwrap_or_default();
+        let mut words = description.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
+        let is_strange = |word: &&str| {
+            is_key(word) || ["KEY_", "BTN_", "ABS_", "REL_"].iter().any(|it| word.starts_with(it))
+        };
+        let strange = words.find(is_strange);
+        assert!(strange.is_none() || bindings.contains(&key.as_str()), "{}: {strange:?}", shown(place));
+    }
 }
 
 #[test]

@@ -40,6 +40,8 @@ fn what_cannot_be_done_is_refused_with_a_way_out() {
         ("--sheet marks.svg --weight-g 200", "--out"),
         ("--pad virtual --out d --weight-g 2", "2 g is no weight for this pad: take one of 30 to 1000 g"),
         ("--pad virtual --out d --weight-g nan", "no weight for this pad"),
+        ("--pad virtual --out d --weight-g 200kg", "write grams, such as 200, 200g or 8.5"),
+        ("--pad virtual --out d --weight-g 2,5g", "2.5 g is no weight for this pad"),
         ("--pad virtual --out -", "name a file"),
         ("--pad virtual --out d.svg --sheet d.svg", "is the sheet"),
         ("--pad capture:game.cap --out d", "adapt --play"),

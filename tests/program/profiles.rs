@@ -111,6 +111,23 @@ fn a_new_profile_is_printed_or_saved_once() {
 }
 
 #[test]
+fn a_profile_is_told_in_plain_words_and_on_a_sheet() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = printed(&tactpad(folder.path(), "profile show contra --plain"));
+    assert!(told.starts_with("Contra, played on the gamepad\n"), "{told}");
+    assert!(told.contains("A: jump") && told.contains("press force 2 N, let-go force 1.4 N"), "{told}");
+    assert!(!told.contains('_'), "{told}");
+    let page = printed(&tactpad(folder.path(), "profile sheet contra"));
+    assert!(page.starts_with("<!doctype html>") && page.contains("<title>Contra, tactpad</title>"), "{page}");
+    for (name, begin) in [("c.svg", "<svg"), ("c.pdf", "%PDF-1.4"), ("c.HTML", "<!doctype html>")] {
+        assert_eq!(printed(&tactpad(folder.path(), &format!("profile sheet contra --out {name}"))), "");
+        let sheet = String::from_utf8(fs::read(folder.path().join(name)).unwrap()).unwrap();
+        assert!(sheet.starts_with(begin) && sheet.contains("A: jump"), "{name}");
+    }
+    refuses(folder.path(), "profile sheet contra --out c.txt", &["c.txt", ".html, .svg or .pdf"]);
+}
+
+#[test]
 fn ones_own_profile_stands_before_the_shipped_one() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

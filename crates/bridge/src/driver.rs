@@ -45,7 +45,7 @@ impl Driver {
                 // More in one read than there is room for: nobody presses so fast.
                 let _ = self.commands.try_push(*command);
             }
-            self.watchers.tell(self.pipeline.verdicts());
+            self.watchers.tell(self.pipeline.verdicts(), self.pipeline.profile());
             self.pipeline.forget_verdicts();
         }
         for observer in &mut self.observers {

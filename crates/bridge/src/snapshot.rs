@@ -1,5 +1,7 @@
 //! All that there is to show of a running bridge, as one value: for `ctl status`, for screens, for other programs.
 
+use std::collections::BTreeMap;
+
 use firmware_proto::identity::SerialNumber;
 use serde::{Serialize, Serializer};
 
@@ -77,6 +79,11 @@ pub struct Status {
     pub changes: Option<PadChanges>,
     /// What is wrong with the pad's stream as a whole.
     pub line: Option<LineStatus>,
+    /// The held controls as people call them: `A: jump`.
+    pub held_names: Vec<String>,
+    /// What controls do in the game, by the controls as bindings write them.
+    #[serde(skip)]
+    pub labels: BTreeMap<String, String>,
 }
 
 /// What is wrong with the pad's stream as a whole.
@@ -183,6 +190,8 @@ mod tests {
             gain: 1.0,
             weighing: None,
             changes: None,
+            held_names: vec!["up arrow".into()],
+            labels: BTreeMap::new(),
         };
         let uncertainty = Uncertainty { x_mm: 0.25, y_mm: 0.25, fx_n: 0.5, fy_n: 0.5, fz_n: 1.0 };
         let at = HostInstant::from_ns(1_500_000_000);
@@ -202,7 +211,7 @@ mod tests {
         assert!(text.contains(r#","groups_dropped":3,"calls_unrecorded":0},"latency_us""#), "{text}");
         let end = concat!(
             r#""latency_us":{"p50":12.5,"p95":0.0,"p99":0.0,"max":0.0},"#,
-            r#""decoder_file":"/pads/my.decoder","gain":1.0,"weighing":null,"changes":null,"line":null}"#
+            r#""decoder_file":"/pads/my.decoder","gain":1.0,"weighing":null,"changes":null,"line":null,"held_names":["up arrow"]}"#
         );
         assert!(text.ends_with(end), "{text}");
     }

@@ -7,6 +7,7 @@ use crate::profile_update::ProfileStatus;
 use crate::snapshot::{BridgeHealth, LineStatus, Snapshot, Status, Uncertainty};
 use crate::state::State;
 use crate::weighing::WeighingStatus;
+use tactpad_core::pipeline::mapping::plain::named;
 use tactpad_core::time::HostInstant;
 
 /// The state of the bridge.
@@ -33,6 +34,7 @@ pub(super) fn snapshot(
     profile_status: &ProfileStatus,
 ) -> Snapshot {
     let Driver { pipeline, sink, .. } = driver;
+    let labels = named::labels(pipeline.profile());
     let pad = pipeline.identity().map(|identity| identity.serial_number);
     let status = Status {
         state: state(driver, connection),
@@ -46,6 +48,7 @@ pub(super) fn snapshot(
         output: sink.describe(),
         contact: pipeline.contact().copied(),
         held: pipeline.held().collect(),
+        held_names: pipeline.held().map(|it| named::control(&labels, it.device, it.code, it.value)).collect(),
         warning: pipeline.warning(),
         line: connection.finding().as_ref().or(pipeline.line_finding()).map(LineStatus::of),
         presses: pipeline.presses(),
@@ -55,6 +58,7 @@ pub(super) fn snapshot(
         gain: pipeline.gain(),
         weighing: pipeline.weighing().map(WeighingStatus::of),
         changes: decoder.changes.of(pad),
+        labels,
     };
     let uncertainty = pipeline.estimate().as_ref().map(Uncertainty::of);
     Snapshot { at: now, status, channels_uv: pipeline.strain().map(|strain| strain.uv), uncertainty }

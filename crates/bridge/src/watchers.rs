@@ -11,6 +11,8 @@ use serde::Serialize;
 
 use crate::queue::{WriteGroup, WriteQueue};
 use tactpad_core::pipeline::mapping::live::verdict::{Reason, Verdict, VerdictEvent};
+use tactpad_core::pipeline::mapping::plain::named;
+use tactpad_core::pipeline::mapping::profile::Profile;
 
 /// So many may watch at a time.
 const WATCHERS_MAX: usize = 8;
@@ -41,6 +43,9 @@ pub struct PressLine {
     button: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     direction: Option<&'static str>,
+    /// What people call it: what it does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
     press: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<Reason>,
@@ -55,19 +60,26 @@ const fn is_none(lost: &u64) -> bool {
 }
 
 impl PressLine {
-    /// That of a verdict, before which so many were lost.
-    pub fn of(verdict: &Verdict, lost: u64) -> Self {
-        let (button, direction, rejected) = match verdict.told {
-            VerdictEvent::Button { number, rejected } => (Some(number), None, rejected),
-            VerdictEvent::Direction { direction, rejected } => (None, Some(direction.name()), rejected),
-            VerdictEvent::Rest => (None, None, None),
+    /// That of a verdict in the play of a profile, before which so many were lost.
+    pub fn of(verdict: &Verdict, profile: &Profile, lost: u64) -> Self {
+        let (button, direction, name, rejected) = match verdict.told {
+            VerdictEvent::Button { number, rejected } => (
+                Some(number),
+                None,
+                number.checked_sub(1).and_then(|it| named::button(profile, it)),
+                rejected,
+            ),
+            VerdictEvent::Direction { direction, rejected } => {
+                (None, Some(direction.name()), Some(named::direction(profile, direction)), rejected)
+            }
+            VerdictEvent::Rest => (None, None, None, None),
         };
         let press = match verdict.told {
             VerdictEvent::Rest => "rest",
             _ if rejected.is_some() => "rejected",
             _ => "accepted",
         };
-        Self { t_us: verdict.t.as_us(), button, direction, press, reason: rejected, lost }
+        Self { t_us: verdict.t.as_us(), button, direction, name, press, reason: rejected, lost }
     }
 }
 
@@ -90,14 +102,14 @@ impl Watchers {
         Ok(true)
     }
 
-    /// Tells everybody. Who went away is forgotten.
-    pub(super) fn tell(&self, verdicts: &[Verdict]) {
+    /// Tells everybody what became of presses in the play of this profile. Who went away is forgotten.
+    pub(super) fn tell(&self, verdicts: &[Verdict], profile: &Profile) {
         if verdicts.is_empty() || self.count.load(Ordering::Acquire) == 0 {
             return;
         }
         // Somebody is being let in: these presses come before it watches, or are lost.
         let Ok(mut all) = self.all.try_lock() else { return };
-        all.retain_mut(|watcher| verdicts.iter().all(|verdict| watcher.tell(verdict).is_ok()));
+        all.retain_mut(|watcher| verdicts.iter().all(|verdict| watcher.tell(verdict, profile).is_ok()));
         self.count.store(all.len(), Ordering::Release);
     }
 }
@@ -112,8 +124,8 @@ impl Watcher {
     }
 
     /// Hands a line on, or counts it as lost.
-    fn tell(&mut self, verdict: &Verdict) -> io::Result<()> {
-        let line = PressLine::of(verdict, self.lost);
+    fn tell(&mut self, verdict: &Verdict, profile: &Profile) -> io::Result<()> {
+        let line = PressLine::of(verdict, profile, self.lost);
         let bytes = (serde_json::to_string(&line).map_err(io::Error::other)? + "\n").into_bytes();
         let is_taken = self.lines.push(WriteGroup { items: bytes, count: 1, written: None })?;
         self.lost = if is_taken { 0 } else { self.lost + 1 };
@@ -142,7 +154,18 @@ mod tests {
 
     use super::*;
     use tactpad_core::pipeline::mapping::profile::Direction;
+    use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
     use tactpad_core::time::StreamInstant;
+
+    /// With two buttons, of which the second has a name.
+    fn profile() -> Profile {
+        let text = "schema = 1\nname = \"x\"\noutput = \"gamepad\"\n[dpad]\nlabel = { left = \"back\" }\n\
+                    [[button]]\nforce = \"fx\"\npress_n = 1.0\nout = { gamepad = \"BTN_TL\", keyboard = \"KEY_A\" }\n\
+                    [[button]]\nforce = \"fz\"\npress_n = 1.0\n\
+                    out = { gamepad = \"BTN_SOUTH\", keyboard = \"KEY_Z\", label = \"jump\" }\n";
+        let (profile, found) = read(text, OutputChoice::AsWritten);
+        profile.unwrap_or_else(|| panic!("{found:?}"))
+    }
 
     fn verdict(us: u64, rejected: Option<Reason>) -> Verdict {
         Verdict { t: StreamInstant::from_us(us), told: VerdictEvent::Button { number: 2, rejected } }
@@ -152,13 +175,16 @@ mod tests {
     fn directions_and_hands_that_rest_have_lines_of_their_own() {
         let line = |told| {
             let verdict = Verdict { t: StreamInstant::from_us(7), told };
-            serde_json::to_string(&PressLine::of(&verdict, 0)).unwrap()
+            serde_json::to_string(&PressLine::of(&verdict, &profile(), 0)).unwrap()
         };
         let left = |rejected| VerdictEvent::Direction { direction: Direction::Left, rejected };
-        assert_eq!(line(left(None)), r#"{"t_us":7,"direction":"left","press":"accepted"}"#);
+        assert_eq!(
+            line(left(None)),
+            r#"{"t_us":7,"direction":"left","name":"left: back","press":"accepted"}"#
+        );
         assert_eq!(
             line(left(Some(Reason::Slow))),
-            r#"{"t_us":7,"direction":"left","press":"rejected","reason":"slow"}"#
+            r#"{"t_us":7,"direction":"left","name":"left: back","press":"rejected","reason":"slow"}"#
         );
         assert_eq!(line(VerdictEvent::Rest), r#"{"t_us":7,"press":"rest"}"#);
     }
@@ -167,14 +193,14 @@ mod tests {
     fn a_watcher_reads_a_line_for_each_press() {
         let (client, served) = UnixStream::pair().unwrap();
         let watchers = Watchers::default();
-        watchers.tell(&[verdict(1, None)]);
+        watchers.tell(&[verdict(1, None)], &profile());
         assert!(watchers.add(&served).unwrap());
-        watchers.tell(&[verdict(5, None), verdict(9, Some(Reason::Bounce))]);
+        watchers.tell(&[verdict(5, None), verdict(9, Some(Reason::Bounce))], &profile());
         let lines: Vec<_> = BufReader::new(&client).lines().take(3).map(Result::unwrap).collect();
         let expected = [
             r#"{"ok":true}"#,
-            r#"{"t_us":5,"button":2,"press":"accepted"}"#,
-            r#"{"t_us":9,"button":2,"press":"rejected","reason":"bounce"}"#,
+            r#"{"t_us":5,"button":2,"name":"A: jump","press":"accepted"}"#,
+            r#"{"t_us":9,"button":2,"name":"A: jump","press":"rejected","reason":"bounce"}"#,
         ];
         assert_eq!(lines, expected);
     }
@@ -184,8 +210,9 @@ mod tests {
         let (client, served) = UnixStream::pair().unwrap();
         let watchers = Watchers::default();
         assert!(watchers.add(&served).unwrap());
+        let profile = profile();
         // More than a socket and the queue keep.
-        (0..40_000).for_each(|us| watchers.tell(&[verdict(us, None)]));
+        (0..40_000).for_each(|us| watchers.tell(&[verdict(us, None)], &profile));
         let reading = std::thread::spawn(move || {
             let (mut told, mut lost) = (0, 0);
             for line in BufReader::new(client).lines().skip(1) {
@@ -200,7 +227,7 @@ mod tests {
         });
         // Each of these is told, or counted with those that were lost.
         while !reading.is_finished() {
-            watchers.tell(&[verdict(50_000, Some(Reason::Slow))]);
+            watchers.tell(&[verdict(50_000, Some(Reason::Slow))], &profile);
         }
         let (told, lost) = reading.join().unwrap();
         assert!(lost > 0 && told + lost >= 40_000, "{told} told, {lost} lost");
@@ -218,7 +245,7 @@ mod tests {
         assert_eq!(watchers.all.lock().unwrap().len(), 1);
         drop(late);
         while watchers.count.load(Ordering::Acquire) > 0 {
-            watchers.tell(&[verdict(1, None)]);
+            watchers.tell(&[verdict(1, None)], &profile());
         }
         assert!(watchers.all.lock().unwrap().is_empty());
     }

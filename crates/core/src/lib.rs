@@ -5,6 +5,7 @@
 //! caller says what happened and when.
 
 pub mod bytes;
+pub mod counted;
 pub mod network;
 pub mod pad;
 pub mod pipeline;

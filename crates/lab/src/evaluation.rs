@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use tactpad_core::counted::counted;
 use tactpad_core::network::Zero;
 use tactpad_core::pipeline::contact::{Decoder, watch};
 use tactpad_core::quantity::{Contact, Strain};
@@ -86,7 +87,7 @@ impl fmt::Display for EvaluationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OtherRows { rows, truths } => {
-                write!(f, "has {rows} rows, and its truth {truths}: give both of one run")
+                write!(f, "has {}, and its truth {truths}: give both of one run", counted(rows, "row"))
             }
             Self::NoZero => f.write_str(
                 "no row without force says what the untouched pad reads, and neither does the decoder; measure some, or \

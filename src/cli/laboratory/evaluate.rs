@@ -13,6 +13,7 @@ use crate::cli::files::labels::LabelOptions;
 use crate::cli::files::tables;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{print_json, stdout};
+use tactpad::counted::counted;
 use tactpad::lab::evaluation::{Errors, Evaluation, EvaluationError};
 use tactpad::lab::tangent::SimulatedPad;
 use tactpad::pipeline::shipped;
@@ -72,7 +73,7 @@ fn unusable(measured: &Path, error: &EvaluationError) -> Failure {
 
 fn print(report: &Evaluation) -> Result<(), Failure> {
     let mut to = stdout();
-    writeln!(to, "{} contacts", report.by_labels.rows)?;
+    writeln!(to, "{}", counted(report.by_labels.rows, "contact"))?;
     writeln!(to, "                 MAE mm  distance mm   RMSE mm   MAE N")?;
     let mut line = |name: &str, errors: &Errors| {
         let Errors { position_mae_mm, position_mean_euclid_mm, position_rmse_mm, force_mae_n, .. } = errors;

@@ -12,6 +12,7 @@ use crate::cli::files::recording::{Profiles, Recording};
 use crate::cli::files::tables;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::{print_json, stdout};
+use tactpad::counted::counted;
 use tactpad::lab::tuning::difference::{Difference, Side, UnmatchedPress};
 use tactpad::pipeline::control::{Code, OutputEvent};
 use tactpad::pipeline::mapping::profile::Profile;
@@ -116,7 +117,7 @@ impl fmt::Display for DifferenceText<'_> {
             writeln!(f, "{sign} {at_s:10.3} s  {}{side}  for {for_s:.3} s", press.code)?;
         }
         let count = |side: Side| only.iter().filter(|it| it.with == side).count();
-        write!(f, "{both} presses with both",)?;
+        write!(f, "{} with both", counted(both, "press"))?;
         if *shift_max_us > 0 {
             write!(f, ", at most {:.0} ms apart", *shift_max_us as f64 * 1e-3)?;
         }

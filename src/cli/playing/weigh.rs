@@ -13,6 +13,7 @@ use crate::cli::files::destination::Destination;
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::recording::{Profiles, Recording};
 use crate::cli::files::tables;
+use crate::cli::number;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, tell, written_over};
 use tactpad::lab::play::weighing::{FileError, InFile, RestReader, RestedLoad, found, in_table};
@@ -33,7 +34,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE")]
     decoder: PathBuf,
     /// The weight, in grams.
-    #[arg(long, value_name = "G", required_unless_present = "factor", allow_hyphen_values = true)]
+    #[arg(long, value_name = "G", value_parser = number::grams, required_unless_present = "factor", allow_hyphen_values = true)]
     weight_g: Option<f64>,
     /// A capture in which the weight rests on the plate for two seconds or more, anywhere.
     #[arg(long, value_name = "CAPTURE", required_unless_present_any = ["measured", "factor"], conflicts_with = "measured")]
@@ -47,11 +48,12 @@ pub(crate) struct Arguments {
         value_name = "S",
         requires = "deviation",
         conflicts_with_all = ["measured", "play", "weight_g"],
+        value_parser = number::factor,
         allow_hyphen_values = true
     )]
     factor: Option<f64>,
     /// And how sure it was of that, as a share.
-    #[arg(long, value_name = "SHARE", requires = "factor", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SHARE", value_parser = number::share, requires = "factor", allow_hyphen_values = true)]
     deviation: Option<f64>,
     /// The decoder to write; a file that is there is replaced, and - is standard output.
     #[arg(long, value_name = "FILE")]

@@ -1,5 +1,6 @@
 //! Text and figures that verbs print: streams, terminals, progress, wrapped sentences.
 
+pub(super) mod date;
 pub(super) mod pictures;
 pub(super) mod progress;
 pub(super) mod reports;

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::counted::counted;
 use firmware_proto::identity::Identity;
 
 /// Why a pad cannot be played with. The text goes on after the pad's name.
@@ -31,20 +32,22 @@ impl fmt::Display for Refusal {
             ),
             Self::OtherChannels { channels, wanted: firmware_proto::CHANNELS } => write!(
                 f,
-                "sends {channels} channels, and its decoder takes nine: describe what it has in a file, and name that with --source"
+                "sends {}, and its decoder takes nine: describe what it has in a file, and name that with --source",
+                counted(channels, "channel")
             ),
             Self::OtherChannels { channels, wanted } => {
-                let of = if *wanted == 0 { "contacts only".into() } else { format!("{wanted} channels") };
+                let of = if *wanted == 0 { "contacts only".into() } else { counted(wanted, "channel") };
                 write!(
                     f,
-                    "sends {channels} channels, and its description is of {of}: name another one with --source"
+                    "sends {}, and its description is of {of}: name another one with --source",
+                    counted(channels, "channel")
                 )
             }
             Self::Unsuitable(identity) => write!(
                 f,
-                "says that it has {} channels of {} bits and {} pV per count; a pad has {} channels of 24 to 32 bits: \
+                "says that it has {} of {} bits and {} pV per count; a pad has {} channels of 24 to 32 bits: \
                  check its firmware",
-                identity.channels,
+                counted(identity.channels, "channel"),
                 identity.count_bits,
                 identity.picovolts_per_count,
                 firmware_proto::CHANNELS

@@ -340,6 +340,20 @@ impl<'t> Section<'t> {
         Some(Self::closed(title, value.span().start, table, known, findings))
     }
 
+    /// The table or the tables under `key`, whatever stands in them; nothing is reported.
+    pub(crate) fn inner(&self, key: &str) -> Vec<Self> {
+        let view = |value: &'t Spanned<DeValue<'t>>| {
+            let table = value.get_ref().as_table()?;
+            let (known, misspelt) = (Vec::new(), Vec::new());
+            Some(Self { title: key.to_owned(), at: value.span().start, table, known, misspelt })
+        };
+        let Some(value) = self.get(key) else { return Vec::new() };
+        match value.get_ref().as_array() {
+            Some(all) => all.iter().map(view).collect::<Option<_>>().unwrap_or_default(),
+            None => view(value).into_iter().collect(),
+        }
+    }
+
     /// The first tables `[[key]]` in the text's order, at most `limit`, each named after `key` and its number
     /// from 1; others are reported.
     pub(crate) fn tables(

@@ -348,6 +348,27 @@ pub(super) async fn guides(State(app): Shared) -> ApiResult {
     Ok(Json(json!({"guides": statuses})).into_response())
 }
 
+#[derive(Deserialize)]
+pub(super) struct ProfileSheetRequest {
+    text: String,
+    /// The date, as the reader writes dates.
+    date: String,
+}
+
+/// `POST /api/sheet`: what a text does, as a drawing of one page.
+pub(super) async fn profile_sheet(
+    State(app): Shared,
+    request: Result<Json<ProfileSheetRequest>, JsonRejection>,
+) -> ApiResult {
+    let ProfileSheetRequest { text, date } = body(request)?;
+    let drawn = move || {
+        ReadProfile::read(&text, app.host.output()).0.map(|read| Sheet::of_profile(read.profile(), &date))
+    };
+    let error = "the profile has errors: mend them first";
+    let sheet = wait(drawn).await?.ok_or_else(|| Refusal::new(StatusCode::UNPROCESSABLE_ENTITY, error))?;
+    Ok(Json(json!({"svg": sheet.svg()})).into_response())
+}
+
 /// `GET /sheet/NAME`: the marks that a known weight is put on, in true size.
 pub(super) async fn sheet(Path(name): Path<String>) -> ApiResult {
     let sheet = || Sheet::of(&Device::nominal());

@@ -62,6 +62,7 @@ const FILES: &[(&str, &str)] = &files![
     "schema.js",
     "screen.js",
     "settings.js",
+    "sheet.js",
     "socket.js",
     "status.js",
     "style.css",
@@ -69,6 +70,7 @@ const FILES: &[(&str, &str)] = &files![
     "text.js",
     "trace.js",
     "values.js",
+    "words.js",
 ];
 
 /// Answers `GET /`.

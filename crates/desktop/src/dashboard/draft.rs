@@ -139,6 +139,8 @@ mod tests {
             {"table": ["dpad"], "key": "centre_radius_mm", "value": 10},
             {"table": ["button", 0], "key": "press_n", "value": 2.5},
             {"table": ["button", 0, "out"], "key": "keyboard", "value": "KEY_SPACE"},
+            {"table": ["button", 0, "out"], "key": "label", "value": "hop"},
+            {"table": ["dpad", "label"], "key": "up", "value": "aim up"},
             {"table": [], "key": "min_press_ms", "value": 50},
             {"table": ["access"], "key": "slow_ms", "value": 100},
         ]);
@@ -154,12 +156,16 @@ mod tests {
             assert!(changed.text.contains(line), "{line}: {}", changed.text);
         }
         assert!(
-            changed.text.contains("out = { gamepad = \"BTN_SOUTH\", keyboard = \"KEY_SPACE\" }"),
+            changed
+                .text
+                .contains("out = { gamepad = \"BTN_SOUTH\", keyboard = \"KEY_SPACE\", label = \"hop\" }"),
             "{}",
             changed.text
         );
         assert_eq!(changed.document.unwrap()["dpad"]["centre_radius_mm"], 10.0);
-        assert_eq!(changed.sketch.unwrap().buttons[0].press_n, 2.5);
+        let sketch = changed.sketch.unwrap();
+        assert_eq!((sketch.buttons[0].press_n, sketch.buttons[0].word.as_str()), (2.5, "A: hop"));
+        assert_eq!(sketch.dpad.unwrap().sectors[2].word, "up: aim up");
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! The messages to the page on the websocket: JSON, a document a message.
 
+use std::collections::BTreeMap;
+
 use serde::ser::SerializeSeq;
 use serde::{Serialize, Serializer};
 
@@ -10,7 +12,8 @@ use tactpad_bridge::timing::{ProfileDelays, Stages};
 use tactpad_bridge::watchers::PressLine;
 use tactpad_core::pipeline::contact::balance::UV_PER_N;
 use tactpad_core::pipeline::control::OutputEvent;
-use tactpad_core::pipeline::mapping::profile::sketch::{Sketch, control};
+use tactpad_core::pipeline::mapping::plain::{controls, named};
+use tactpad_core::pipeline::mapping::profile::sketch::Sketch;
 use tactpad_core::quantity::{CHANNELS, Contact};
 use tactpad_core::source::{FULL_N, Measures, Source};
 
@@ -33,6 +36,8 @@ struct FastFrame {
     uncertainty: Option<Uncertainty>,
     channels_uv: Option<[f32; CHANNELS]>,
     held: Vec<String>,
+    /// The same for people.
+    held_names: Vec<String>,
     is_playing: bool,
     trace: Vec<JsonTracePoint>,
     events: Vec<JsonEvent>,
@@ -66,12 +71,16 @@ struct JsonEvent {
     device: &'static str,
     code: String,
     value: i32,
+    /// What people call the control below its rest, and above it: those of a key are the same.
+    names: [String; 2],
 }
 
-impl From<&OutputEvent> for JsonEvent {
-    fn from(event: &OutputEvent) -> Self {
-        let OutputEvent { at, device, code, value } = event;
-        Self { t_us: at.as_us(), device: device.name(), code: code.to_string(), value: *value }
+impl JsonEvent {
+    /// Of an event, by what controls do in the game.
+    fn of(event: &OutputEvent, labels: &BTreeMap<String, String>) -> Self {
+        let OutputEvent { at, device, code, value } = *event;
+        let names = [-1, 1].map(|side| named::control(labels, device, code, side));
+        Self { t_us: at.as_us(), device: device.name(), code: code.to_string(), value, names }
     }
 }
 
@@ -158,6 +167,7 @@ impl Cursor {
             (newest.trace.since(self.trace), newest.events.since(self.events));
         let (presses, no_presses) = newest.presses.since(self.presses);
         let Moment { at, t, contact, uncertainty, channels_uv, held, is_playing, .. } = now.clone();
+        let labels = newest.profile.as_ref().map(|profile| named::labels(profile)).unwrap_or_default();
         let frame = FastFrame {
             kind: "frame",
             host_us: at.as_ns() / 1_000,
@@ -165,11 +175,14 @@ impl Cursor {
             contact,
             uncertainty,
             channels_uv,
-            held: held.iter().map(|level| control(level.code, level.value)).collect(),
+            held: held.iter().map(|level| controls::written(level.code, level.value)).collect(),
+            held_names: held.iter().map(|it| named::control(&labels, it.device, it.code, it.value)).collect(),
             is_playing,
             trace: trace.copied().map(JsonTracePoint).collect(),
-            events: events.map(JsonEvent::from).collect(),
-            presses: presses.map(|verdict| PressLine::of(verdict, 0)).collect(),
+            events: events.map(|event| JsonEvent::of(event, &labels)).collect(),
+            presses: newest.profile.as_ref().map_or_else(Vec::new, |profile| {
+                presses.map(|verdict| PressLine::of(verdict, profile, 0)).collect()
+            }),
             missed: no_points + no_events + no_presses,
         };
         (self.trace, self.events, self.presses) =

@@ -33,3 +33,4 @@ mod shadow;
 mod stale_comments;
 pub mod user_key;
 mod websocket;
+mod words;

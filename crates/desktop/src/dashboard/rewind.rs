@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::replay_buffer::{ReplayBuffer, make};
 use tactpad_core::pipeline::call::OwnedCall;
 use tactpad_core::pipeline::control::OutputEvent;
+use tactpad_core::pipeline::mapping::plain::{controls, named};
 use tactpad_core::pipeline::mapping::profile::Profile;
 use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_lab::tuning::difference::{Difference, Press, Side, UnmatchedPress, presses};
@@ -28,6 +29,8 @@ pub(super) struct RewindAnswer {
     seconds: f64,
     now: PressCounts,
     draft: PressCounts,
+    /// What people call the controls.
+    names: BTreeMap<String, String>,
     /// How many presses both give.
     both: usize,
     /// By how much the later one of them is later at most.
@@ -48,6 +51,8 @@ struct PressCounts {
 struct JsonUnmatchedPress {
     #[serde(flatten)]
     press: Press,
+    /// The control as bindings write it.
+    control: String,
     /// Since the beginning of the play.
     at_s: f64,
 }
@@ -72,9 +77,10 @@ impl RewindRequest {
         let read = |text: &str| check::read(text, output).0.ok_or(RewindError::Errors);
         let draft = read(&self.text)?;
         let now = self.saved.as_deref().map_or_else(|| Ok(past.begin.profile().clone()), read)?;
+        let labels = named::labels(&draft);
         let [now, draft] = [now, draft].map(|profile| replayed(&past, profile));
         let begin_us = past.begin.at().as_us();
-        Ok(RewindAnswer::of(past.duration_us(), begin_us, &now, &draft))
+        Ok(RewindAnswer::of(past.duration_us(), begin_us, &labels, [&now, &draft]))
     }
 }
 
@@ -94,18 +100,26 @@ fn replayed(past: &ReplayBuffer, profile: Profile) -> Vec<OutputEvent> {
 }
 
 impl RewindAnswer {
-    fn of(duration_us: u64, begin_us: u64, now: &[OutputEvent], draft: &[OutputEvent]) -> Self {
+    fn of(
+        duration_us: u64,
+        begin_us: u64,
+        labels: &BTreeMap<String, String>,
+        [now, draft]: [&[OutputEvent]; 2],
+    ) -> Self {
         let Difference { both, shift_max_us, only, .. } = Difference::between(now, draft);
         let once = |only: &UnmatchedPress| JsonUnmatchedPress {
             press: only.press,
+            control: control(&only.press),
             at_s: only.press.t_us.saturating_sub(begin_us) as f64 * 1e-6,
         };
         let of = |side: Side| only.iter().filter(|it| it.with == side).map(once).collect();
+        let name = |it: Press| (control(&it), named::control(labels, it.device, it.code, it.value));
         Self {
             ok: true,
             seconds: duration_us as f64 * 1e-6,
             now: PressCounts::of(now),
             draft: PressCounts::of(draft),
+            names: [now, draft].into_iter().flat_map(presses).map(name).collect(),
             both,
             shift_max_ms: shift_max_us as f64 * 1e-3,
             only_now: of(Side::Old),
@@ -114,12 +128,17 @@ impl RewindAnswer {
     }
 }
 
+/// A press's control as bindings write it.
+fn control(press: &Press) -> String {
+    controls::written(press.code, press.value)
+}
+
 impl PressCounts {
     fn of(events: &[OutputEvent]) -> Self {
         let all = presses(events);
         let mut tally = Self { downs: all.len(), presses: BTreeMap::new() };
         for press in all {
-            *tally.presses.entry(press.code.to_string()).or_default() += 1;
+            *tally.presses.entry(control(&press)).or_default() += 1;
         }
         tally
     }

@@ -17,7 +17,7 @@ use super::host::DashboardHost;
 use super::listener::{LimitedListener, Peer};
 use super::shadow::{self, ShadowState};
 use super::user_key::{UserKey, random};
-use super::{api, assets, handshake, websocket};
+use super::{api, assets, handshake, websocket, words};
 use tactpad_bridge::event_loop::Bridge;
 use tactpad_bridge::observer::{Observation, Observer, observe};
 use tactpad_bridge::request::RequestSender;
@@ -108,6 +108,7 @@ fn router(app: Arc<AppState>, guard: Arc<Guard>) -> Router {
         .route("/api/live", get(websocket::upgrade))
         .route("/api/status", get(api::status))
         .route("/api/schema", get(api::schema))
+        .route("/api/words", get(words::words))
         .route("/api/profiles", get(api::profiles))
         .route("/api/profile/{name}", get(api::profile).put(api::save).delete(api::delete))
         .route("/api/profile/{name}/history", get(api::history))
@@ -121,6 +122,7 @@ fn router(app: Arc<AppState>, guard: Arc<Guard>) -> Router {
         .route("/api/draft", post(api::draft))
         .route("/api/preview", post(api::preview).delete(api::end_preview))
         .route("/api/rewind", post(api::rewind))
+        .route("/api/sheet", post(api::profile_sheet))
         .route("/api/doctor", get(api::doctor))
         .route("/api/reports", get(api::reports))
         .route("/api/guides", get(api::guides))

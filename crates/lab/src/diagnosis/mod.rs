@@ -56,6 +56,7 @@ use self::validation::gain::{Rows, gain, rmse};
 use self::validation::rounded::rounded;
 use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
+use tactpad_core::counted::counted;
 use tactpad_core::quantity::CHANNEL_NAMES;
 use tactpad_core::tables::measured::Table;
 use tactpad_inference::covariance::Remainder;
@@ -94,11 +95,13 @@ impl fmt::Display for DiagnosisError {
         match self {
             Self::Rows(rows) => write!(
                 f,
-                "{rows} rows with channels: to tell causes apart it takes {ROWS_MIN} at least; tactpad protocol paper makes a plan"
+                "{} with channels: to tell causes apart it takes {ROWS_MIN} at least; tactpad protocol paper makes a plan",
+                counted(rows, "row")
             ),
             Self::Locations(locations) => write!(
                 f,
-                "contacts at {locations} places: to tell causes apart it takes {LOCATIONS_MIN} at least, spread over the plate"
+                "contacts at {}: to tell causes apart it takes {LOCATIONS_MIN} at least, spread over the plate",
+                counted(locations, "place")
             ),
             Self::Unloaded => f.write_str("all forces are zero: without written loads the channels cannot be held against the pad"),
             Self::Stuck(name) => write!(

@@ -312,8 +312,3 @@ pub fn times_text(count: usize) -> String {
         _ => format!("{count} times"),
     }
 }
-
-/// `1 row`, `2 rows`.
-pub(crate) fn rows_text(count: usize) -> String {
-    if count == 1 { "1 row".to_owned() } else { format!("{count} rows") }
-}

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::play::home::{AtHome, Region};
 use crate::play::windows::Window;
+use tactpad_core::counted::counted;
 
 /// What the numbers of the parts are.
 pub const HEADING: &str = "What is known of the pad, as what it leaves open of a press of 2.5 N:";
@@ -59,7 +60,11 @@ impl Summary {
     /// What it was found from.
     pub fn source(&self) -> String {
         let Self { presses, placements, .. } = self;
-        format!("{presses} tenths of a second of presses, {placements} placements of a weight")
+        format!(
+            "{} of a second of presses, {} of a weight",
+            counted(presses, "tenth"),
+            counted(placements, "placement")
+        )
     }
 
     /// What is still open, and what helps most. `weighing` says how a weight is put on the marks.

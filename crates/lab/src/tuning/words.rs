@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::fitting::Change;
 use super::knobs::Key;
+use tactpad_core::pipeline::mapping::plain::settings::amount;
 use tactpad_core::pipeline::mapping::profile::Profile;
 use tactpad_core::toml_text::edit::Table;
 
@@ -55,10 +56,6 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("access", "bounce_ms", "a press that begins less than {} after the last one does not count"),
 ];
 
-/// The units that keys end with.
-const UNITS: [(&str, &str); 5] =
-    [("_mm", " mm"), ("_ms", " ms"), ("_deg", "°"), ("_hz", " Hz"), ("_n", " N")];
-
 /// A key with the table it stands in, as `button.1.press_n`.
 pub fn path((table, key): Key) -> String {
     match table {
@@ -86,10 +83,10 @@ impl ChangedNumber {
         };
         let meaning = MEANINGS.iter().find(|(table, known, _)| *table == name && *known == key);
         let meaning = meaning.map_or("it is {}", |(_, _, meaning)| *meaning);
-        let unit = UNITS.iter().find(|(end, _)| key.ends_with(end)).map_or("", |(_, unit)| *unit);
-        let before = from.map_or_else(|| "not at all".to_owned(), |from| format!("{from}{unit}"));
-        let said = meaning.replace("{}", &format!("{to}{unit}"));
-        Self { key: path((table, key)), from, to, words: format!("{whose}{said}; before: {before} ({key})") }
+        let place = if name.is_empty() { key.to_owned() } else { format!("{name}.{key}") };
+        let before = from.map_or_else(|| "not at all".to_owned(), |from| amount(&place, from));
+        let said = meaning.replace("{}", &amount(&place, to));
+        Self { key: path((table, key)), from, to, words: format!("{whose}{said}; before: {before}") }
     }
 }
 
@@ -123,10 +120,7 @@ mod tests {
         let change =
             Change { table: Table::Listed("zone", 0), key: "outer_radius_mm", from: Some(15.0), to: 6.5 };
         let told = ChangedNumber::of(&change, &profile);
-        assert_eq!(
-            told.words,
-            "zone \"ring\": it ends 6.5 mm from the centre; before: 15 mm (outer_radius_mm)"
-        );
+        assert_eq!(told.words, "zone \"ring\": it ends 6.5 mm from the centre; before: 15 mm");
         assert_eq!(told.key, "zone.1.outer_radius_mm");
     }
 

@@ -38,8 +38,8 @@ impl std::fmt::Display for TooFew {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "the network is adapted with {} contacts at least, of which one in {VALIDATION_PART} judges the others; here \
-             are {}: measure more",
+            "the network needs at least {} contacts, of which one in {VALIDATION_PART} judges the others, and the table \
+             has {}: measure more",
             ROWS_MIN, self.0
         )
     }

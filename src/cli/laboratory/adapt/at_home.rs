@@ -14,6 +14,7 @@ use crate::cli::files::field::solve;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::tell;
+use tactpad::counted::counted;
 use tactpad::lab::calibration::data::earlier::EarlierCalibration;
 use tactpad::lab::play::home::{AtHome, HomeError, calibrated};
 use tactpad::lab::play::summary::{HEADING, PlatePart, Summary};
@@ -95,8 +96,9 @@ impl fmt::Display for AtHomeReport {
             let mark = if *open { "  open" } else { "" };
             writeln!(
                 f,
-                "{name:<29} {deviation_mm:>5.2} mm {:>5.1} % of the force, {presses} presses{mark}",
-                100.0 * force_share
+                "{name:<29} {deviation_mm:>5.2} mm {:>5.1} % of the force, {}{mark}",
+                100.0 * force_share,
+                counted(presses, "press")
             )?;
         }
         f.write_str(&hanging("", &self.summary.next(WEIGHING)))

@@ -31,6 +31,7 @@ use crate::cli::files::field::{field_of, flaws, solve};
 use crate::cli::files::labels::LabelOptions;
 use crate::cli::printing::pictures;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, say, tell, written_over};
+use tactpad::counted::counted;
 use tactpad::lab::tangent::SimulatedPad;
 
 /// Arguments of `tactpad adapt`.
@@ -150,7 +151,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             || NamedCauses::by(&tables, &model),
         );
         let (decoder, found) = adapted?;
-        let note = format!("{} contacts of {}", measured.contacts.count(), measured.names);
+        let note = format!("{} of {}", counted(measured.contacts.count(), "contact"), measured.names);
         to.write(&decoder.to_bytes(&note).unwrap_or_default())?;
         let pad = found.map(|found| FoundPad::of(found, named));
         FitReport::Own { pad: pad.map(Box::new) }

@@ -97,7 +97,7 @@ fn of_table(table: &Table, pad: &SimulatedPad<'_>) -> Result<Diagnosis, String> 
     diagnosis::check(table, pad).map_err(|why| why.to_string())?;
     let rows = table.rows.len();
     if rows > ROWS_MAX {
-        return Err(format!("causes are looked for in {ROWS_MAX} rows at most, and here are {rows}"));
+        return Err(format!("causes are looked for in at most {ROWS_MAX} rows, and the table has {rows}"));
     }
     diagnosis::causes(table, pad).map_err(|why| why.to_string())
 }

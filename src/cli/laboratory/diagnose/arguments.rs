@@ -9,6 +9,7 @@ use crate::cli::failure::Failure;
 use crate::cli::files::destination::{Destination, Folder};
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::labels::LabelOptions;
+use crate::cli::number;
 use crate::cli::printing::reports;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, written_over};
 use tactpad::lab::diagnosis;
@@ -90,8 +91,12 @@ impl Arguments {
 
 /// A share that a model may get wrong.
 fn model_error(text: &str) -> Result<f64, String> {
-    let percent: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
-    if (0.0..=50.0).contains(&percent) { Ok(percent) } else { Err("it is from 0 to 50 per cent".to_owned()) }
+    let percent = number::read(text, &["%"], "").unwrap_or(f64::NAN);
+    if (0.0..=50.0).contains(&percent) {
+        Ok(percent)
+    } else {
+        Err("write per cent from 0 to 50, as in 0.5".to_owned())
+    }
 }
 
 /// Where the file of an option goes: nowhere that is read, and not between the lines of a document or of another file.

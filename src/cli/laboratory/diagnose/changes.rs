@@ -9,6 +9,7 @@ use super::document::Finding;
 use super::text::{cause, sized};
 use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::quoted;
+use tactpad::counted::counted;
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report;
 use tactpad::lab::effect::Effect;
@@ -181,12 +182,18 @@ impl fmt::Display for ChangesText<'_> {
         let Self(Comparison { found, since, play }) = self;
         let (earlier, later) = found.presses;
         let (held, when) = match (since, earlier) {
-            (Reference::Calibrated(decoder), _) => {
-                (format!("{later} presses against {}", decoder.display()), " since it was calibrated")
-            }
-            (Reference::Played, earlier) => {
-                (format!("{later} presses against {} earlier ones", earlier.unwrap_or_default()), "")
-            }
+            (Reference::Calibrated(decoder), _) => (
+                format!("{} against {}", counted(later, "press"), decoder.display()),
+                " since it was calibrated",
+            ),
+            (Reference::Played, earlier) => (
+                format!(
+                    "{} against {}",
+                    counted(later, "press"),
+                    counted(earlier.unwrap_or_default(), "earlier one")
+                ),
+                "",
+            ),
         };
         let held = format!("{held}, in tenths of a second");
         let least = 100.0 * found.least_module_gain;

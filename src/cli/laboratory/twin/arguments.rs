@@ -6,6 +6,7 @@ use clap::Args;
 
 use crate::cli::failure::Failure;
 use crate::cli::files::device::PadOptions;
+use crate::cli::number;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
 use crate::cli::printing::written::{is_same, written_over};
@@ -56,10 +57,10 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub(super) profile: Option<String>,
     /// Of play and presses: touch no farther from the centre than this.
-    #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+    #[arg(long, value_name = "MM", value_parser = number::millimetres, allow_hyphen_values = true)]
     pub(super) within_mm: Option<f64>,
     /// Of play and presses: lay a weight of so many grams on five marks afterwards.
-    #[arg(long, value_name = "G", requires = "weights", allow_hyphen_values = true)]
+    #[arg(long, value_name = "G", value_parser = number::grams, requires = "weights", allow_hyphen_values = true)]
     pub(super) weight_g: Option<f64>,
     /// With --weight-g: the CSV to write that says when the weight rested on which mark.
     #[arg(long, value_name = "FILE", requires = "weight_g")]

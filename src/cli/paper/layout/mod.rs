@@ -14,6 +14,7 @@ use self::report::LayoutReport;
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Folder;
 use crate::cli::files::device::PadOptions;
+use crate::cli::number;
 use crate::cli::printing::pictures;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::print_json;
@@ -134,12 +135,12 @@ fn parse_radii(text: &str) -> Result<Radii, String> {
 }
 
 fn parse_share(text: &str) -> Result<f64, String> {
-    let share = text.trim().parse().unwrap_or(f64::NAN);
+    let share = number::share(text).unwrap_or(f64::NAN);
     if share > 0.0 && share < 1.0 { Ok(share) } else { Err("write a share above 0 and below 1".into()) }
 }
 
 fn parse_noise(text: &str) -> Result<f64, String> {
-    let noise_uv = text.trim().parse().unwrap_or(f64::NAN);
+    let noise_uv = number::read(text, &["uV", "µV"], "").unwrap_or(f64::NAN);
     if noise_uv > 0.0 && noise_uv <= NOISE_MAX_UV {
         Ok(noise_uv)
     } else {

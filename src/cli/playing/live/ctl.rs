@@ -14,6 +14,7 @@ use super::left_keys;
 use super::runtime::{BridgeName, socket_path};
 use super::sound::{Sounds, Which};
 use crate::cli::failure::Failure;
+use crate::cli::number;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::{printable, stdout};
 use tactpad::bridge::control::watch;
@@ -64,7 +65,7 @@ enum Action {
     #[command(after_help = "Example: tactpad ctl weigh 200")]
     Weigh {
         /// The weight, in grams.
-        #[arg(value_name = "GRAMS", allow_hyphen_values = true)]
+        #[arg(value_name = "GRAMS", value_parser = number::grams, allow_hyphen_values = true)]
         grams: f64,
     },
     /// Go over to another profile.
@@ -175,8 +176,9 @@ fn print_status(status: &Value) -> io::Result<()> {
     }
     writeln!(out, "decoder  {}", text("decoder"))?;
     writeln!(out, "output   {}", text("output"))?;
-    let held = status.get("held").and_then(Value::as_array).into_iter().flatten();
-    writeln!(out, "held     {}", held.filter_map(Value::as_str).collect::<Vec<_>>().join(" "))?;
+    let held = status.get("held_names").and_then(Value::as_array).into_iter().flatten();
+    let held: Vec<_> = held.filter_map(Value::as_str).map(printable).collect();
+    writeln!(out, "held     {}", held.join("   "))?;
     if let Some(warning) = warning(status) {
         writeln!(out, "warning  {warning}")?;
     }

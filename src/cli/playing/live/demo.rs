@@ -9,7 +9,6 @@ use serde::Serialize;
 use super::chosen;
 use super::displays::DisplayOptions;
 use super::files::Files;
-use super::newest::line;
 use super::output::{Output, log_to};
 use super::playing::{Audience, TerminalHost, microseconds, open_virtual, play, requests};
 use super::screen::Screen;
@@ -30,6 +29,7 @@ use tactpad::bridge::sink::Sink;
 use tactpad::bridge::sink::null::NullSink;
 use tactpad::bridge::sink::recording::{ExpectedEvent, RecordedEvents, RecordingSink};
 use tactpad::bridge::transport::address::PadAddress;
+use tactpad::counted::counted;
 use tactpad::pipeline::control::OutputDevice;
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::virtual_pad::script::Script;
@@ -177,8 +177,8 @@ impl Verdict {
 
     /// The message for a run without differences.
     fn words(&self) -> String {
-        let (events, contacts) = (self.expected.len(), self.contacts);
-        format!("all {events} events and {contacts} contacts are those that the player meant")
+        let (events, contacts) = (counted(self.expected.len(), "event"), counted(self.contacts, "contact"));
+        format!("all {events} and {contacts} are those that the player meant")
     }
 
     fn check(&self, ending: Ending, seen: &RecordedEvents, bridge: &Bridge) -> Result<(), Failure> {
@@ -266,7 +266,7 @@ fn start_screen(title: String, bridge: &Bridge, seen: &Arc<Mutex<RecordedEvents>
     let seen = Arc::clone(seen);
     Screen::start(title, bridge.snapshot(), move || {
         let newest = seen.lock().map(|seen| seen.newest.clone());
-        newest.unwrap_or_default().iter().map(line).collect()
+        newest.unwrap_or_default().into_iter().collect()
     })
 }
 
@@ -289,10 +289,16 @@ fn report(arguments: &Arguments, bridge: &Bridge, seen: &RecordedEvents) -> Resu
     let Summary { frames, frames_lost, contacts, downs, ups, pointer_moves, held_at_end, latency_us } =
         summary;
     let Percentiles { p50, p95, p99, max } = latency_us;
-    tell(arguments, &format!("{frames} frames, {frames_lost} lost; {contacts} contacts"))?;
-    tell(arguments, &format!("{downs} downs, {ups} ups, {held_at_end} held at the end"))?;
+    tell(
+        arguments,
+        &format!("{}, {frames_lost} lost; {}", counted(frames, "frame"), counted(contacts, "contact")),
+    )?;
+    tell(
+        arguments,
+        &format!("{}, {}, {held_at_end} held at the end", counted(downs, "down"), counted(ups, "up")),
+    )?;
     if pointer_moves > 0 {
-        tell(arguments, &format!("{pointer_moves} moves of the pointer"))?;
+        tell(arguments, &format!("{} of the pointer", counted(pointer_moves, "move")))?;
     }
     let times = format!(
         "bytes readable to event written: p50 {p50:.0} µs, p95 {p95:.0} µs, p99 {p99:.0} µs, max {max:.0} µs"
@@ -303,10 +309,10 @@ fn report(arguments: &Arguments, bridge: &Bridge, seen: &RecordedEvents) -> Resu
 fn check_end(bridge: &Bridge, expected: u64) -> Result<(), String> {
     let (contacts, held) = (bridge.health().contacts, bridge.held_when_over());
     if held > 0 {
-        return Err(format!("{held} controls were still held when the time was over"));
+        return Err(format!("still held when the time was over: {}", counted(held, "control")));
     }
     if contacts == expected {
         return Ok(());
     }
-    Err(format!("{contacts} contacts where the script has {expected}"))
+    Err(format!("{} where the script has {expected}", counted(contacts, "contact")))
 }

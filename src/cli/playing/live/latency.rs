@@ -26,6 +26,7 @@ use tactpad::bridge::opening::Patience;
 use tactpad::bridge::sink::{Sink, null::NullSink, uinput};
 use tactpad::bridge::timing::{ProfileDelays, Stages, Timing};
 use tactpad::bridge::transport::address::PadAddress;
+use tactpad::counted::counted;
 use tactpad::pipeline::Pipeline;
 
 /// Arguments of `tactpad latency`.
@@ -125,7 +126,7 @@ fn open_sink(output: &Output) -> Result<Box<dyn Sink>, Failure> {
 }
 
 fn print(report: &LatencyReport, out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "{} samples, {} writes", report.samples, report.writes)?;
+    writeln!(out, "{}, {}", counted(report.samples, "sample"), counted(report.writes, "write"))?;
     writeln!(out, "{:<11} {:>9} {:>9} {:>9} {:>9}", "µs", "p50", "p95", "p99", "max")?;
     let Stages { read, decode, map, write } = &report.stages_us;
     let rows = [

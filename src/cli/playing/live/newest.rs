@@ -25,9 +25,9 @@ impl Newest {
         if is_shown { Ok(Box::new(self.clone())) } else { log_to(io::stdout()) }
     }
 
-    /// The events, one line each, the newest last.
-    pub(super) fn lines(&self) -> Vec<String> {
-        self.0.lock().map(|events| events.iter().map(line).collect()).unwrap_or_default()
+    /// The events, the newest last.
+    pub(super) fn events(&self) -> Vec<OutputEvent> {
+        self.0.lock().map(|events| events.iter().copied().collect()).unwrap_or_default()
     }
 }
 
@@ -48,9 +48,4 @@ impl Sink for Newest {
     fn describe(&self) -> String {
         PLACE.into()
     }
-}
-
-/// An event as a picture shows it.
-pub(super) fn line(event: &OutputEvent) -> String {
-    format!("{:8.3} s  {} {:+}", event.at.as_us() as f64 * 1e-6, event.code, event.value)
 }

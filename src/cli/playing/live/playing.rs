@@ -20,6 +20,7 @@ use tactpad::bridge::profile_update::ProfileUpdate;
 use tactpad::bridge::requests::Requests;
 use tactpad::bridge::snapshot::Drops;
 use tactpad::bridge::transport::address::PadAddress;
+use tactpad::counted::counted;
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::pipeline::mapping::read::ReadProfile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
@@ -227,7 +228,7 @@ pub(super) fn play(bridge: &mut Bridge, address: &PadAddress) -> Result<Ending, 
     let ending = bridge.run();
     let Drops { groups_dropped, .. } = bridge.drops();
     if groups_dropped > 0 {
-        say(format_args!("{groups_dropped} groups of events are missing: they were not taken in time"));
+        say(format_args!("{} of events missing: not taken in time", counted(groups_dropped, "group")));
     }
     ending.map_err(|error| match error {
         BridgeError::NotAPad(_) | BridgeError::Refused(_) => Failure::Unusable(format!("{address} {error}")),

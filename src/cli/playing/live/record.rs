@@ -28,6 +28,7 @@ use tactpad::bridge::clock::Clock;
 use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::bridge::transport::fault::FaultPlan;
+use tactpad::counted::counted;
 
 /// Arguments of `tactpad record`.
 #[derive(Debug, Args)]
@@ -119,12 +120,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     drop(cue);
     match bridge.drops().calls_unrecorded {
         0 => {
-            say(format_args!("{} samples recorded", bridge.health().samples));
+            say(format_args!("{} recorded", counted(bridge.health().samples, "sample")));
             Ok(())
         }
         missing => Err(Failure::Failed(format!(
-            "{place} did not take what was recorded: its last {missing} calls are missing; record to a faster disk, or \
-             see that the pipe is read"
+            "{place} did not take what was recorded: {} missing at its end; record to a faster disk, or \
+             see that the pipe is read",
+            counted(missing, "call")
         ))),
     }
 }

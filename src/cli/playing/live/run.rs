@@ -129,7 +129,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         duration_us: arguments.seconds.map(microseconds),
     })?;
     prepared.start(&bridge)?;
-    let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.lines()));
+    let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.events()));
     let ending = play(&mut bridge, &arguments.pad);
     drop(screen);
     // What keeps play ends with what it hears.

@@ -1,5 +1,6 @@
 //! The live state on a terminal: where the finger is, how hard it presses, what is held.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::os::fd::AsFd;
@@ -11,8 +12,10 @@ use std::time::Duration;
 use rustix::termios::tcgetwinsize;
 
 use tactpad::bridge::snapshot::{BridgeHealth, Snapshot, Status};
-use tactpad::pipeline::control::Code;
-use tactpad::pipeline::mapping::live::intent::Level;
+use tactpad::counted::counted;
+use tactpad::pipeline::control::names::HAT_AXES;
+use tactpad::pipeline::control::{Code, OutputEvent};
+use tactpad::pipeline::mapping::plain::named;
 use tactpad::quantity::Contact;
 
 /// The picture of the plate: a character is about twice as high as wide.
@@ -42,11 +45,11 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// Starts drawing on stdout, which must be a terminal. `events` gives the newest events, one line each.
+    /// Starts drawing on stdout, which must be a terminal. `events` gives the newest events.
     pub(super) fn start(
         title: String,
         snapshot: Arc<Mutex<Snapshot>>,
-        events: impl Fn() -> Vec<String> + Send + 'static,
+        events: impl Fn() -> Vec<OutputEvent> + Send + 'static,
     ) -> Self {
         let (stop, stopped) = channel::<()>();
         let (draws, drawing) = channel::<()>();
@@ -160,8 +163,9 @@ fn cut(line: &str, columns: usize) -> String {
     plain.take(columns.saturating_sub(1)).collect()
 }
 
-fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
-    let Status { state, contact, held, warning, health, latency_us, profile_error, .. } = &seen.status;
+fn facts(seen: &Snapshot, events: &[OutputEvent]) -> Vec<String> {
+    let Status { state, contact, held_names, labels, warning, health, latency_us, profile_error, .. } =
+        &seen.status;
     let BridgeHealth { pipeline, drops } = health;
     let forces = contact.unwrap_or_default();
     let mut facts = vec![
@@ -172,7 +176,7 @@ fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
         },
         format!("Fx {:+5.2} N   Fy {:+5.2} N", forces.fx_n, forces.fy_n),
         format!("Fz {:5.2} N  {}", forces.fz_n, bar(forces.fz_n)),
-        format!("held   {}", held.iter().map(level).collect::<Vec<_>>().join("  ")),
+        format!("held   {}", held_names.join("   ")),
         format!(
             "frames {}   lost {}   damaged {}",
             pipeline.samples, pipeline.frames_lost, pipeline.frames_damaged
@@ -182,18 +186,27 @@ fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
     let unusable = profile_error.as_ref().and_then(|error| error.lines().next());
     facts.extend(unusable.map(|error| format!("! {error}: see `tactpad ctl status`")));
     facts.extend(warning.map(|warning| format!("! {warning}")));
-    facts.extend((drops.groups_dropped > 0).then(|| format!("! {} groups not logged", drops.groups_dropped)));
-    facts
-        .extend(events.iter().rev().take(ROWS.saturating_sub(facts.len())).map(|event| format!("  {event}")));
+    facts.extend(
+        (drops.groups_dropped > 0)
+            .then(|| format!("! {} not logged", counted(drops.groups_dropped, "group"))),
+    );
+    facts.extend(events.iter().rev().take(ROWS.saturating_sub(facts.len())).map(|event| line(event, labels)));
     facts
 }
 
-fn level(level: &Level) -> String {
-    match level.code {
-        Code::Key(_) => format!("{}", level.code),
-        Code::Axis(_) => format!("{}={:+}", level.code, level.value),
-        Code::Relative(_) => format!("{}{:+}/s", level.code, level.value),
-    }
+/// An event: `3.214 s  A: jump, pressed`.
+fn line(event: &OutputEvent, labels: &BTreeMap<String, String>) -> String {
+    let OutputEvent { at, device, code, value } = *event;
+    let called = |value| named::control(labels, device, code, value);
+    let told = match code {
+        Code::Key(_) => format!("{}, {}", called(1), if value == 0 { "let go" } else { "pressed" }),
+        Code::Axis(_) if HAT_AXES.contains(&code) && value == 0 => {
+            format!("{} or {}, let go", called(-1), called(1))
+        }
+        Code::Axis(_) if HAT_AXES.contains(&code) => format!("{}, pressed", called(value)),
+        Code::Axis(_) | Code::Relative(_) => format!("{} {value:+}", called(value)),
+    };
+    format!("  {:8.3} s  {told}", at.as_us() as f64 * 1e-6)
 }
 
 fn bar(force_n: f32) -> String {

@@ -1,4 +1,4 @@
-//! `tactpad profile`: list, show, check, new, edit; history, restore, delete, rename; export, import.
+//! `tactpad profile`: list, show, sheet, check, new, edit; history, restore, delete, rename; export, import.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -16,6 +16,7 @@ mod kept;
 mod list;
 mod new;
 mod own;
+mod plain;
 mod stored;
 mod verdict;
 
@@ -47,11 +48,25 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// Print a profile's text.
-    #[command(after_help = "Example: tactpad profile show contra > my-contra.toml")]
+    /// Print a profile's text, or what it does in plain words.
+    #[command(
+        after_help = "Example: tactpad profile show contra > my-contra.toml\n\n  tactpad profile show contra --plain"
+    )]
     Show {
         /// A name from `profile list`, or a file.
         profile: String,
+        /// Say in plain words what each press does, with which forces and times.
+        #[arg(long)]
+        plain: bool,
+    },
+    /// Make a sheet of one page: the plate with its zones, what each press does, how it fits the hand, the date. It prints on A4 and Letter.
+    #[command(after_help = "Example: tactpad profile sheet contra --out contra.pdf")]
+    Sheet {
+        /// A name from `profile list`, or a file.
+        profile: String,
+        /// The file, by its end .html, .svg or .pdf; without it the page is printed as HTML.
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
     },
     /// Say everything that is wrong with a profile.
     #[command(after_help = "Example: tactpad profile check my-contra.toml")]
@@ -145,7 +160,11 @@ enum Action {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.action {
         Action::List { json } => list::run(*json),
-        Action::Show { profile } => Ok(stdout().write_all(chosen::find(profile)?.text.as_bytes())?),
+        Action::Show { profile, plain: true } => plain::print(profile),
+        Action::Show { profile, plain: false } => {
+            Ok(stdout().write_all(chosen::find(profile)?.text.as_bytes())?)
+        }
+        Action::Sheet { profile, out } => plain::sheet(profile, out.as_deref()),
         Action::Check { profile, json } => verdict::run(profile, *json),
         Action::New { name, save } => new::new(name, *save),
         Action::Edit { name } => new::edit(name),

@@ -63,7 +63,7 @@ fn meant(profile: &Profile) -> Vec<CueTarget> {
             };
             all.push(CueTarget {
                 word: format!("button {}{kind}", button.number),
-                cue: format!("{how}{} ({})", towards(button.force), does.keys),
+                cue: format!("{how}{} ({})", towards(button.force), does.word),
             });
         }
     }

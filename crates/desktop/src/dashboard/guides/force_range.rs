@@ -2,6 +2,7 @@
 
 use super::guide::{GuideContext, GuideResult, GuideStatus, PageGuide, PageStep, Proposal, StepState};
 use super::recording::{NO_NAME, Recording};
+use tactpad_core::counted::counted;
 use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_lab::tuning::fitting::Fitted;
 use tactpad_lab::tuning::force_range::fit::{ForceRangeError, fit};
@@ -64,7 +65,8 @@ impl PageGuide for ForceRange {
             let state = self.recording.step(done);
             PageStep {
                 state,
-                detail: (state == StepState::Doing).then(|| format!("{} presses so far", self.touches)),
+                detail: (state == StepState::Doing)
+                    .then(|| format!("{} so far", counted(self.touches, "press"))),
                 progress: done.filter(|_| state == StepState::Doing),
                 ..PageStep::to_do(id, title, text)
             }

@@ -45,9 +45,9 @@ export function announcePress(press) {
   schedule();
 }
 
-/** "Button 1 accepted", "left rejected: too short", "resting hand". */
-export function pressInWords({ button, direction, press, reason }) {
+/** "A: jump accepted", "left rejected: too short", "hand at rest". */
+export function pressInWords({ button, direction, name, press, reason }) {
   if (press === "rest") return "hand at rest";
-  const who = button === undefined || button === null ? direction : `button ${button}`;
+  const who = name ?? direction ?? `button ${button}`;
   return press === "rejected" ? `${who} rejected: ${REASONS[reason] ?? reason}` : `${who} accepted`;
 }

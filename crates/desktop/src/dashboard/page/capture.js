@@ -3,6 +3,7 @@
 import { announce } from "./announce.js";
 import { button } from "./dom.js";
 import { isModifier, keyName, padNames } from "./keys.js";
+import { controlsInWords } from "./words.js";
 
 const LABELS = { keyboard: "Press a key …", gamepad: "Press a button …" };
 const HINTS = { keyboard: "A key is a place: its name is that of a US keyboard, whatever it types in your layout" };
@@ -73,7 +74,7 @@ class Capture {
     this.node.removeEventListener("blur", this.leave);
     this.node.textContent = this.label;
     this.node.classList.remove("listening");
-    announce(names === null ? "Left as it is." : `${names} is taken.`);
+    announce(names === null ? "Left as it is." : `${controlsInWords(this.device, names)} is taken.`);
     if (names !== null) this.take(names);
   }
 }

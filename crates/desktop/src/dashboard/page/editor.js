@@ -13,6 +13,7 @@ import { ProfileHistory } from "./profile_history.js";
 import { Rewind } from "./rewind.js";
 import { askConflict, askDrop, askName, readProfile, writeProfile } from "./saving.js";
 import { Schema } from "./schema.js";
+import { printSheet } from "./sheet.js";
 import { TextPane, plural } from "./text.js";
 import { Values } from "./values.js";
 
@@ -59,7 +60,7 @@ export class ProfileView {
     this.message = el("p", { class: "editor-message", role: "status" });
     this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
       el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert,
-      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), el("label", { class: "check main" }, this.live, "Play the draft live"), this.state, this.message));
+      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), button("Print …", () => this.#print(), { id: "print", class: "main" }), el("label", { class: "check main" }, this.live, "Play the draft live"), this.state, this.message));
   }
 
   /** Makes what needs the schema, once. */
@@ -78,11 +79,11 @@ export class ProfileView {
       open: (name) => this.#reopen(name),
       mayDrop: async () => !this.draft.dirty || await askDrop(this.#name) === true,
     });
-    const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab: arrow keys move it, Page Up and Page Down move it far, Home and End to its limits. Each has a field among the keys." });
+    const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab: arrow keys move it, Page Up and Page Down move it far, Home and End to its limits. Each has a field among the settings." });
     this.body.replaceChildren(el("div", { class: "editor-grid" },
       el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node, hint)),
-      el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Keys" }), this.form.node)),
-      el("div", { class: "area-text" }, el("div", { class: "card" }, el("h3", { text: "Text" }), this.text.node), this.rewind.node, this.profileHistory.node)));
+      el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Settings" }), this.form.node)),
+      el("div", { class: "area-text" }, this.text.node, this.rewind.node, this.profileHistory.node)));
   }
 
   /** The view comes into sight. */
@@ -289,6 +290,10 @@ export class ProfileView {
     const answer = await askConflict();
     if (answer === "theirs") await this.#load(name);
     if (answer === "overwrite") await this.#write(name, (await readProfile(name)).version);
+  }
+
+  async #print() {
+    await printSheet(this.draft.text).catch((error) => this.#tell(`Not printed: ${error.message}`));
   }
 
   async #saveAs() {

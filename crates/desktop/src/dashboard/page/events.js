@@ -13,9 +13,9 @@ const MOST_LANES = 12;
 const MOVING = /^(REL_[XY]|ABS_(X|Y|Z|RX|RY|RZ)|REL_WHEEL_HI_RES|SYN_.*)$/;
 
 /** The controls that an event lets down and up: the halves of a hat are two. */
-function levels({ code, value }) {
-  if (!code.startsWith("ABS_HAT")) return [{ control: code, down: value !== 0 }];
-  return [{ control: `${code}-`, down: value < 0 }, { control: `${code}+`, down: value > 0 }];
+function levels({ code, value, names: [below, above] }) {
+  if (!code.startsWith("ABS_HAT")) return [{ control: above, down: value !== 0 }];
+  return [{ control: below, down: value < 0 }, { control: above, down: value > 0 }];
 }
 
 export class EventLanes {
@@ -63,7 +63,7 @@ export class EventLanes {
       if (down) lane.push({ from_us: event.t_us, to_us: null });
       else open.to_us = event.t_us;
       this.#lanes.set(control, lane);
-      this.#tell(event.t_us, control, down ? "down" : "up");
+      this.#tell(event.t_us, control, down ? "pressed" : "let go");
     }
   }
 

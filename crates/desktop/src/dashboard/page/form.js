@@ -6,14 +6,14 @@ import { Field } from "./field.js";
 import { nameOf } from "./schema.js";
 import { TABLES, withEffect, withTable, withoutTable } from "./templates.js";
 import { tablesOf, written } from "./values.js";
+import { capital, choiceInWords, controlsOf, settingAt } from "./words.js";
 
 /** Keys that stand in sight even while they are not written: handles and the usual choices. */
 const IN_SIGHT = new Set(["release_n", "release_force_n", "min_force_n", "mode", "centre_radius_mm", "radius_hysteresis_mm", "rotation_deg",
   "diagonal_deg", "centre_x_mm", "centre_y_mm", "from_deg", "to_deg", "inner_radius_mm", "outer_radius_mm", "hysteresis_mm", "left_handed", "filter_samples",
-  "min_press_ms", "slow_ms", "bounce_ms", "gamepad", "keyboard", "from_n", "full_n", "full_radius_mm", "speed_counts_per_s", "zone", "up", "down", "left", "right", "class", "executable", "from"]);
+  "min_press_ms", "slow_ms", "bounce_ms", "gamepad", "keyboard", "from_n", "full_n", "full_radius_mm", "speed_counts_per_s", "zone", "label", "up", "down", "left", "right", "class", "executable", "from"]);
 const IN_SIGHT_BESIDE = { long_press_ms: "hold", permissive_hold: "hold", hold_on_other_key_press: "hold", double_press_ms: "double", hard_press_n: "hard", hard_release_n: "hard", skip: "hard", skip_ms: "skip", dwell_mm: "dwell_ms" };
 const EFFECTS = ["out", "tap", "double", "hold", "light", "hard"];
-const TITLES = { access: "Help for hands (access)", gain: "Gains of the sides (gain)", dpad: "Directions (dpad)", pointer: "Mouse pointer (pointer)" };
 
 export class Form {
   /** @type {Field[]} */
@@ -29,11 +29,11 @@ export class Form {
     Object.assign(this, { values, schema });
     this.groups = el("div", { class: "groups" });
     this.state = el("p", { class: "warn" });
-    this.lists = ["gamepad", "pointer_button"].map((kind) => el("datalist", { id: `names-${kind.replace("_button", "")}` },
-      ...(schema.json.$defs[kind].anyOf[0].enum).map((value) => el("option", { value }))));
+    this.lists = ["gamepad", "keyboard", "pointer"].map((device) => el("datalist", { id: `names-${device}` },
+      ...controlsOf(device).filter(([name]) => schema.canBind(device, name)).map(([, value]) => el("option", { value }))));
     const explain = el("input", { type: "checkbox", checked: true, onchange: () => this.node.classList.toggle("unexplained", !explain.checked) });
     this.adders = el("div", { class: "commands adders" });
-    this.set = el("fieldset", { class: "form-set" }, el("legend", { class: "unseen", text: "Keys of the profile" }), this.groups, el("h4", { text: "Add" }), this.adders);
+    this.set = el("fieldset", { class: "form-set" }, el("legend", { class: "unseen", text: "Settings of the profile" }), this.groups, el("h4", { text: "Add" }), this.adders);
     this.node = el("div", { class: "form" }, el("label", { class: "check" }, explain, "Explanations"), this.state, this.set, ...this.lists);
   }
 
@@ -76,7 +76,7 @@ export class Form {
     for (const table of Object.keys(this.schema.json.properties)) {
       const value = document[table];
       if (value === undefined || typeof value !== "object") continue;
-      if (!Array.isArray(value)) groups.push(this.#group(table, TITLES[table] ?? table, [table], value, (title) => this.#remove(table, 0, title)));
+      if (!Array.isArray(value)) groups.push(this.#group(table, capital(settingAt([table]).word), [table], value, (title) => this.#remove(table, 0, title)));
       else value.forEach((one, index) => groups.push(this.#group(nameOf([table, index]), titleOf(table, index, one), [table, index], one, (title) => this.#remove(table, index, title))));
     }
     this.groups.replaceChildren(...groups);
@@ -105,7 +105,7 @@ export class Form {
     return this.#fold(name, "group", el("strong", { text: title }), true, [
       ...seen.map((about) => this.#field(path, about)),
       ...this.#inner(path, value, keys),
-      this.#folded(`${name} more`, `Keys that are not written (${folded.length})`, path, folded),
+      this.#folded(`${name} more`, `More settings (${folded.length})`, path, folded),
       remove === null ? null : button(`Remove ${title}`, () => remove(title), { class: "remove" }),
     ]);
   }
@@ -131,14 +131,14 @@ export class Form {
   /** What lies within a table: effects of a button, bindings of directions, steps of a macro. */
   #inner(path, value, keys) {
     if (path[0] === "button") return this.#effects(path, value);
-    if (path[0] === "macro") return tablesOf(value, "steps").map((step, index) => this.#part([...path, "steps", index], `step ${index + 1}`, null));
+    if (path[0] === "macro") return tablesOf(value, "steps").map((step, index) => this.#part([...path, "steps", index], `Step ${index + 1}`, null));
     return keys.filter(({ kind }) => kind === "table" && path.length > 0).map(({ key }) => this.#bindings(path, key));
   }
 
   #part(path, title, remove) {
     const value = written(this.#draft.document, path) ?? {};
     const keys = this.schema.keys(path);
-    const seen = keys.filter(({ key }) => value[key] !== undefined);
+    const seen = keys.filter(({ key }) => value[key] !== undefined || key === "label");
     const folded = keys.filter((about) => !seen.includes(about));
     return el("fieldset", { class: "part", "data-part": nameOf(path) }, el("legend", { text: title }), ...seen.map((about) => this.#field(path, about)),
       this.#folded(nameOf(path), `More for ${title} (${folded.length})`, path, folded),
@@ -147,26 +147,27 @@ export class Form {
 
   #effects(path, value) {
     const present = EFFECTS.filter((effect) => value[effect] !== undefined);
-    const parts = present.map((effect) => this.#part([...path, effect], effect, () => this.#removeEffect(path, effect)));
+    const parts = present.map((effect) => this.#part([...path, effect], capital(settingAt([...path, effect]).word), () => this.#removeEffect(path, effect)));
     const fitting = present.length === 0 ? ["out", "tap"] : { out: [], tap: ["double", "hold"], light: ["hard"] }[present[0]] ?? [];
     const adders = fitting.filter((effect) => !present.includes(effect))
-      .map((effect) => button(`+ ${effect}`, () => this.#addEffect(path, effect, value.press_n), { "aria-label": `+ ${effect} of button ${path[1] + 1}` }));
+      .map((effect) => [effect, `+ ${settingAt([...path, effect]).word}`])
+      .map(([effect, label]) => button(label, () => this.#addEffect(path, effect, value.press_n), { "aria-label": `${label} of button ${path[1] + 1}` }));
     return adders.length === 0 ? parts : [...parts, el("div", { class: "commands" }, ...adders)];
   }
 
   #addEffect(path, effect, press_n) {
-    this.#apply(`Added: ${effect}.`, [`[data-part="${nameOf([...path, effect])}"] [data-field]`],
+    this.#apply(`Added: ${settingAt([...path, effect]).word}.`, [`[data-part="${nameOf([...path, effect])}"] [data-field]`],
       () => this.#draft.replace(withEffect(this.#draft.text, path[1], effect, press_n)));
   }
 
   #removeEffect(path, effect) {
     const others = EFFECTS.filter((other) => other !== effect).map((other) => `[data-part="${nameOf([...path, other])}"] [data-field]`);
-    this.#apply(`Removed: ${effect}.`, [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.values.write([...path, effect], null));
+    this.#apply(`Removed: ${settingAt([...path, effect]).word}.`, [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.values.write([...path, effect], null));
   }
 
   #bindings(path, device) {
     const inner = [...path, device];
-    return this.#folded(nameOf(inner), `What directions are on the ${device}`, inner, this.schema.keys(inner));
+    return this.#folded(nameOf(inner), capital(settingAt(inner).word), inner, this.schema.keys(inner));
   }
 }
 
@@ -174,10 +175,16 @@ function inSight(key, value) {
   return IN_SIGHT.has(key) || (key in IN_SIGHT_BESIDE && value[IN_SIGHT_BESIDE[key]] !== undefined);
 }
 
-function titleOf(table, index, { name, force }) {
-  const which = name ?? (table === "button" ? force : undefined);
-  const title = table[0].toUpperCase() + table.slice(1);
-  return `${title} ${index + 1}${which === undefined ? "" : `: ${which}`}`;
+function titleOf(table, index, one) {
+  const labels = labelsOf(one);
+  const force = table === "button" ? choiceInWords([table, index, "force"], one.force) : undefined;
+  const which = labels === "" ? one.name ?? force : labels;
+  return `${capital(settingAt([table]).word)} ${index + 1}${which === undefined ? "" : `: ${which}`}`;
+}
+
+/** What a table's parts do in the game: "jump / run". */
+function labelsOf(one) {
+  return [one, ...EFFECTS.map((effect) => one[effect])].map((part) => part?.label).filter((label) => typeof label === "string").join(" / ");
 }
 
 /** What decides which fields there are. */
@@ -187,6 +194,6 @@ function shapeOf(document) {
     if (typeof value !== "object") return 0;
     return Object.entries(value).filter(([, inner]) => typeof inner === "object").map(([key, inner]) => [key, shape(inner, depth + 1)]);
   };
-  const names = ["zone", "layer", "macro", "button"].map((table) => tablesOf(document, table).map(({ name, force }) => name ?? force));
+  const names = ["zone", "layer", "macro", "stick", "trigger", "button"].map((table) => tablesOf(document, table).map((one) => [one.name ?? one.force, labelsOf(one)]));
   return JSON.stringify([shape(document, 0), names]);
 }

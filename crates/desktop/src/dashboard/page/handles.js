@@ -1,7 +1,8 @@
 // A handle: something that can be dragged, and is a slider for keys and screen readers.
 
 import { number, set } from "./dom.js";
-import { nameOf, stepOf, tidy, unitOf } from "./schema.js";
+import { nameOf, tidy } from "./schema.js";
+import { settingAt } from "./words.js";
 
 const PAGE_STEPS = 10;
 const KEYS_MS = 800;
@@ -26,7 +27,7 @@ export class Handle {
     this.element = element;
     this.#spec = spec;
     this.#values = values;
-    this.step = stepOf(spec.path.at(-1), values.schema.describe(spec.path).kind);
+    this.step = settingAt(spec.path).step;
     set(element, { role: "slider", tabindex: 0, "data-handle": nameOf(spec.path), "aria-label": spec.label });
     element.classList.add("handle");
     element.addEventListener("pointerdown", (event) => this.#down(event));
@@ -53,7 +54,7 @@ export class Handle {
   #show(value) {
     this.value = value;
     const { min, max } = this.#values.limits(this.path);
-    const unit = unitOf(this.path.at(-1)).replace("°", "degrees");
+    const unit = settingAt(this.path).unit.replace("°", "degrees");
     set(this.element, { "aria-valuenow": value, "aria-valuemin": min, "aria-valuemax": max, "aria-valuetext": `${number(value, 2).replace(/\.?0+$/, "")} ${unit}` });
     this.#spec.place(value);
   }

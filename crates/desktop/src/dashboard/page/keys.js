@@ -31,9 +31,9 @@ const MODIFIERS = /^(Control|Shift|Alt|Meta)(Left|Right)$/;
 /** Whether a key is one that is held beside others. */
 export const isModifier = (code) => MODIFIERS.test(code);
 
-/** Buttons of the Gamepad API's standard mapping by their place; triggers have no name among bindings. */
+/** Buttons of the Gamepad API's standard mapping by their place; triggers have no name among bindings. The kernel calls X of an Xbox 360 pad north. */
 const PAD_BUTTONS = [
-  "BTN_SOUTH", "BTN_EAST", "BTN_WEST", "BTN_NORTH", "BTN_TL", "BTN_TR", null, null, "BTN_SELECT", "BTN_START",
+  "BTN_SOUTH", "BTN_EAST", "BTN_NORTH", "BTN_WEST", "BTN_TL", "BTN_TR", null, null, "BTN_SELECT", "BTN_START",
   "BTN_THUMBL", "BTN_THUMBR", "ABS_HAT0Y-", "ABS_HAT0Y+", "ABS_HAT0X-", "ABS_HAT0X+", "BTN_MODE",
 ];
 const PAD_AXES = [["ABS_HAT0X-", "ABS_HAT0X+"], ["ABS_HAT0Y-", "ABS_HAT0Y+"]];

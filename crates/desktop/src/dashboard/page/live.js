@@ -12,7 +12,7 @@ import { Status } from "./status.js";
 const FIGURES_MS = 100;
 // A pad that cannot tell how sure a force is has this deviation: as much as the whole scale.
 const UNKNOWN_N = 5;
-const QUANTITIES = [["x", "x_mm", "mm", 1], ["y", "y_mm", "mm", 1], ["Fx", "fx_n", "N", 2], ["Fy", "fy_n", "N", 2], ["Fz", "fz_n", "N", 2]];
+const QUANTITIES = [["to the right, x", "x_mm", "mm", 1], ["upwards, y", "y_mm", "mm", 1], ["push right, Fx", "fx_n", "N", 2], ["push up, Fy", "fy_n", "N", 2], ["press, Fz", "fz_n", "N", 2]];
 
 /** Place and force as numbers, each with its standard deviation. */
 class Readout {
@@ -115,11 +115,11 @@ export class LiveView {
   /** Draws the last frame. */
   draw() {
     if (this.frame === undefined) return;
-    const { contact, uncertainty, channels_uv, held } = this.frame;
+    const { contact, uncertainty, channels_uv } = this.frame;
     this.finger.draw(contact, uncertainty, this.trace);
     this.forces.draw(contact);
     this.readout.draw(contact, uncertainty);
-    this.#drawHeld(held);
+    this.#drawHeld(this.frame);
     this.lanes.draw();
     this.channels.draw(channels_uv, this.message?.status.warning ?? null, this.message?.status.warning_sentence ?? null);
   }
@@ -142,7 +142,7 @@ export class LiveView {
     this.finger.draw(null, null, this.trace);
     this.forces.draw(null);
     this.readout.clear();
-    this.#drawHeld([]);
+    this.#drawHeld({ held: [], held_names: [] });
     this.lanes.clear();
     this.channels.clear();
     this.latency.draw({});
@@ -150,10 +150,11 @@ export class LiveView {
     this.status.clear();
   }
 
-  #drawHeld(held) {
-    const text = held.join(" ");
+  #drawHeld({ held, held_names }) {
+    const text = held_names.join(" ");
     if (text === this.heldText) return;
     this.heldText = text;
-    this.held.replaceChildren(...(held.length === 0 ? ["nothing"] : held).map((name) => el("li", { text: name, class: held.length === 0 ? "none" : null })));
+    const chips = held_names.map((name, index) => el("li", {}, name, el("code", { class: "code-name", text: held[index] })));
+    this.held.replaceChildren(...(chips.length === 0 ? [el("li", { class: "none", text: "nothing" })] : chips));
   }
 }

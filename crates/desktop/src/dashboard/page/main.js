@@ -15,6 +15,7 @@ import { Screen } from "./screen.js";
 import { startSettings } from "./settings.js";
 import { Live } from "./socket.js";
 import { Trace } from "./trace.js";
+import { loadWords } from "./words.js";
 
 const NO_WAY_IN = "This page does not find its bridge: open it from the tray, or with `tactpad ctl dashboard`.";
 const LOST = "tactpad has ended, or it stands still. Start it again as you did before: this page goes on by itself, and a draft is kept.";
@@ -119,6 +120,7 @@ async function start() {
     if (connection.textContent === "") say(connection, NO_WAY_IN);
     return startRouter();
   }
+  await loadWords();
   const { store, found } = await DraftStore.open(key).catch(() => ({ store: null, found: null }));
   views.profile.setDraftStore(store, found);
   startRouter();

@@ -3,17 +3,17 @@
 import { el, number, say } from "./dom.js";
 
 const FORCES = [
-  { axis: "fz", name: "Fz", meaning: "into the plate", sides: 1, least_n: 4 },
-  { axis: "fx", name: "Fx", meaning: "− left, + right", sides: 2, least_n: 2 },
-  { axis: "fy", name: "Fy", meaning: "− down, + up", sides: 2, least_n: 2 },
+  { axis: "fz", name: "Press", meaning: "into the plate, Fz", sides: 1, least_n: 4 },
+  { axis: "fx", name: "Push right", meaning: "− is left, Fx", sides: 2, least_n: 2 },
+  { axis: "fy", name: "Push up", meaning: "− is down, Fy", sides: 2, least_n: 2 },
 ];
 
 /** The shapes of thresholds; a name stands beside each, so that none is told by its look alone. */
 export const MARKS = {
   press: { sign: "▲", name: "press" },
-  release: { sign: "△", name: "release" },
+  release: { sign: "△", name: "let go" },
   hard_press: { sign: "◆", name: "hard" },
-  hard_release: { sign: "◇", name: "hard release" },
+  hard_release: { sign: "◇", name: "let go of hard" },
   from: { sign: "△", name: "from" },
   full: { sign: "▲", name: "full" },
 };
@@ -31,8 +31,8 @@ export function thresholdRows(sketch) {
   });
   if (sketch.dpad) pair("directions", ["dpad"], "min_force_n", sketch.dpad.min_force_n, "release_force_n", sketch.dpad.release_force_n);
   if (sketch.pointer) pair("pointer", ["pointer"], "min_force_n", sketch.pointer.min_force_n, "release_force_n", undefined);
-  for (const [index, { trigger, from_n, full_n }] of sketch.triggers.entries()) {
-    rows.push({ name: `${trigger} trigger`, force: "fz", path: ["trigger", index], marks: [
+  for (const [index, { word, from_n, full_n }] of sketch.triggers.entries()) {
+    rows.push({ name: word, force: "fz", path: ["trigger", index], marks: [
       { kind: "from", key: "from_n", force_n: from_n }, { kind: "full", key: "full_n", force_n: full_n }] });
   }
   for (const button of sketch.buttons) rows.push(buttonRow(button));
@@ -43,9 +43,9 @@ function buttonRow(button) {
   const marks = ["press", "release", "hard_press", "hard_release"]
     .map((kind) => ({ kind, key: `${kind}_n`, force_n: button[`${kind}_n`] }))
     .filter(({ force_n }) => force_n !== null);
-  const keys = button.does.map(({ role, keys: names }) => `${role} ${names}`).join(", ");
+  const does = button.does.map(({ role, role_word, word }) => (role === "out" ? word : `${role_word} ${word}`)).join(", ");
   const where = button.zone === null ? "" : ` in ${button.zone}`;
-  return { name: `button ${button.number}${where}: ${keys}`, force: button.force, path: ["button", button.number - 1], marks };
+  return { name: `button ${button.number}${where}: ${does}`, force: button.force, path: ["button", button.number - 1], marks };
 }
 
 function roundUp(force_n) {
@@ -93,7 +93,7 @@ class Meter {
     this.max_n = max_n;
     const ends = this.sides === 2 ? [-1, -0.5, 0, 0.5, 1] : [0, 0.25, 0.5, 0.75, 1];
     this.scale.replaceChildren(...ends.map((end) => {
-      const tick = el("span", { text: number(end * this.max_n, this.max_n < 4 && end % 0.5 !== 0 ? 2 : 1) });
+      const tick = el("span", { text: `${number(end * this.max_n, this.max_n < 4 && end % 0.5 !== 0 ? 2 : 1)}${end === 1 ? " N" : ""}` });
       tick.style.left = `${this.part(end * this.max_n) * 100}%`;
       return tick;
     }));
@@ -105,7 +105,7 @@ class Meter {
       const { style } = this.spans[index];
       style.left = `${Math.min(...parts) * 100}%`;
       style.width = `${(Math.max(...parts) - Math.min(...parts)) * 100}%`;
-      say(this.figures[index], row.marks.map(({ kind, force_n }) => `${MARKS[kind].sign} ${MARKS[kind].name} ${number(force_n, 2)}`).join("  "));
+      say(this.figures[index], row.marks.map(({ kind, force_n }) => `${MARKS[kind].sign} ${MARKS[kind].name} ${number(force_n, 2)} N`).join("  "));
     });
   }
 

@@ -1,16 +1,10 @@
 // The picture of the plate: the disc, directions, zones, rings, names and the centre of the hand.
 
 import { set, svg } from "./dom.js";
-import { PLATE_RADIUS_MM, middleDeg, polar, ringPath, sectorPath } from "./geometry.js";
+import { PLATE_RADIUS_MM, ringPath, sectorPath } from "./geometry.js";
 
 const FAR_MM = 80;
-const NAME_MM = 23;
 let plates = 0;
-
-/** "up", "up + right", or "keeps the last" where a sector has no direction of its own. */
-function sectorName(directions) {
-  return directions.length === 0 ? "keeps" : directions.join(" + ");
-}
 
 export class Plate {
   /** @param {string} label what the picture shows, for those who do not see it */
@@ -36,53 +30,49 @@ export class Plate {
     const centre = sketch.centre_mm;
     if (sketch.dpad) this.#drawDirections(centre, sketch.dpad);
     sketch.zones.forEach((zone) => this.#drawZone(centre, zone));
-    if (sketch.pointer) this.#drawPair(centre, sketch.pointer.centre_radius_mm, sketch.pointer.full_radius_mm, "pointer");
+    if (sketch.pointer) this.#drawPair(centre, sketch.pointer.centre_radius_mm, sketch.pointer.full_radius_mm, "pointer", sketch.pointer.word_at_mm);
     for (const stick of sketch.sticks) {
-      if (stick.from === "place") this.#drawPair(centre, stick.centre, stick.full, `${stick.stick} stick`);
+      if (stick.from === "place") this.#drawPair(centre, stick.centre, stick.full, stick.word, stick.word_at_mm);
     }
     this.#drawCentre(centre);
   }
 
   #drawDirections(centre, dpad) {
     for (const [index, sector] of dpad.sectors.entries()) {
-      const { from_deg, to_deg, directions } = sector;
+      const { from_deg, to_deg, directions, word, word_at_mm } = sector;
       const kind = directions.length === 1 ? "plain" : "diagonal";
       this.layers.sectors.append(svg("path", {
         class: `sector ${kind}`,
         d: sectorPath(centre, from_deg, to_deg, dpad.centre_radius_mm, FAR_MM),
         "data-sector": index,
       }));
-      this.#name(centre, middleDeg(from_deg, to_deg), NAME_MM, sectorName(directions));
+      this.#name(word_at_mm, word);
     }
     this.#ring(centre, dpad.centre_radius_mm, "starts");
     this.#ring(centre, dpad.release_radius_mm, "ends");
   }
 
-  #drawZone(centre, { name, from_deg, to_deg, inner_radius_mm, outer_radius_mm }) {
+  #drawZone(centre, { name, name_at_mm, from_deg, to_deg, inner_radius_mm, outer_radius_mm }) {
     const whole = from_deg === null || to_deg === null;
     const d = whole
       ? ringPath(centre, inner_radius_mm, outer_radius_mm)
       : sectorPath(centre, from_deg, to_deg, inner_radius_mm, outer_radius_mm);
     this.layers.zones.append(svg("path", { class: "zone", d, "fill-rule": "evenodd" }));
-    const middle_mm = (inner_radius_mm + Math.min(outer_radius_mm, PLATE_RADIUS_MM - 3)) / 2;
-    this.#name(centre, whole ? 90 : middleDeg(from_deg, to_deg), whole && inner_radius_mm === 0 ? 0 : middle_mm, name, "zone-name");
+    this.#name(name_at_mm, name, "zone-name");
   }
 
-  #drawPair(centre, inner_mm, outer_mm, name) {
+  #drawPair(centre, inner_mm, outer_mm, name, at_mm) {
     this.#ring(centre, inner_mm, "ends");
     this.#ring(centre, outer_mm, "starts");
-    this.#name(centre, 90, outer_mm - 2.2, name);
+    this.#name(at_mm, name);
   }
 
   #ring([x, y], radius_mm, kind) {
     this.layers.rings.append(svg("circle", { class: `ring ${kind}`, cx: x, cy: -y, r: radius_mm }));
   }
 
-  #name(centre, deg, radius_mm, text, kind = "") {
-    const { x, y } = polar(centre, deg, radius_mm);
-    const far = Math.hypot(x, y);
-    const inward = far > PLATE_RADIUS_MM - 5 ? (PLATE_RADIUS_MM - 5) / far : 1;
-    this.layers.names.append(svg("text", { class: `plate-name ${kind}`, x: x * inward, y: y * inward, text }));
+  #name([x, y], text, kind = "") {
+    this.layers.names.append(svg("text", { class: `plate-name ${kind}`, x, y: -y, text }));
   }
 
   #drawCentre([x, y]) {

@@ -30,7 +30,7 @@ export class Rewind {
     announce(sentence);
   }
 
-  #show({ ok, seconds, now, draft, only_now, only_draft, error, diagnostics }) {
+  #show({ ok, seconds, now, draft, names, only_now, only_draft, error, diagnostics }) {
     if (ok === false) return this.#say(error ?? diagnostics?.[0]?.message ?? "It could not be played.");
     const difference = draft.downs - now.downs;
     const sentence = `In the last ${number(seconds, 0)} s the draft would have pressed ${draft.downs} times in place of ${now.downs}${difference === 0 ? "" : ` (${difference > 0 ? "+" : "−"}${Math.abs(difference)})`}.`;
@@ -38,17 +38,17 @@ export class Rewind {
     const codes = [...new Set([...Object.keys(now.presses), ...Object.keys(draft.presses)])].sort();
     counts.body.append(...codes.map((code) => {
       const [before, after] = [now.presses[code] ?? 0, draft.presses[code] ?? 0];
-      return row([code, before, after, after === before ? "same" : `${after > before ? "+" : "−"}${Math.abs(after - before)}`]);
+      return row([names[code] ?? code, before, after, after === before ? "same" : `${after > before ? "+" : "−"}${Math.abs(after - before)}`]);
     }));
     this.answer.replaceChildren(el("p", { text: sentence }), scroller("Presses of each control", counts.node),
-      list("Only as saved", only_now), list("Only with the draft", only_draft));
+      list("Only as saved", only_now, names), list("Only with the draft", only_draft, names));
     announce(sentence);
   }
 }
 
-function list(title, presses) {
+function list(title, presses, names) {
   if (presses.length === 0) return el("p", { class: "quiet", text: `${title}: none.` });
   const { node, body } = table(`${title}: ${presses.length}`, ["Control", "At"], { class: "figures" });
-  body.append(...presses.slice(0, MOST).map(({ code, at_s }) => row([code, `${number(at_s, 1)} s`])));
+  body.append(...presses.slice(0, MOST).map(({ control, at_s }) => row([names[control] ?? control, `${number(at_s, 1)} s`])));
   return el("details", {}, el("summary", { text: `${title}: ${presses.length}` }), node);
 }

@@ -29,6 +29,12 @@ export class Schema {
     return node;
   }
 
+  /** Whether a binding of a device may be this control. */
+  canBind(device, control) {
+    const known = this.json.$defs[{ pointer: "pointer_button" }[device] ?? device].anyOf?.[0].enum;
+    return known === undefined || known.includes(control);
+  }
+
   /** Whether there is such a key. @param {Path} path */
   has(path) {
     return this.at(path) !== undefined;
@@ -68,23 +74,6 @@ function kindOf(node) {
   if (node.type === "array") return "list";
   if (node.type === "object" || node.properties && Object.keys(node.properties).length > 0) return "table";
   return node.type ?? "string";
-}
-
-const UNITS = { _mm: "mm", _n: "N", _deg: "°", _ms: "ms", _hz: "Hz", _samples: "samples", _per_s: "per s" };
-
-/** The unit that a key's name ends with. */
-export function unitOf(key) {
-  const end = Object.keys(UNITS).find((suffix) => key.endsWith(suffix));
-  return end === undefined ? "" : UNITS[end];
-}
-
-const STEPS = { mm: 0.5, N: 0.05, "°": 1, ms: 10, Hz: 0.1 };
-
-/** By how much one step of a key changes it. */
-export function stepOf(key, kind) {
-  const unit = unitOf(key);
-  if (kind === "integer") return unit === "ms" ? 10 : 1;
-  return STEPS[unit] ?? 0.05;
 }
 
 /** Rounds away what floating point adds. */

@@ -1,11 +1,11 @@
 // What a person chose for this page: colours, motion, announcements. Kept in the browser.
 
 const KEY = "tactpad-display";
-const DEFAULTS = { theme: "auto", motion: "auto", announce: true };
+const DEFAULTS = { theme: "auto", motion: "auto", announce: true, codes: false };
 const less = matchMedia("(prefers-reduced-motion: reduce)");
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
-/** @type {{ theme: string, motion: string, announce: boolean }} */
+/** @type {{ theme: string, motion: string, announce: boolean, codes: boolean }} */
 let chosen = { ...DEFAULTS };
 const themeListeners = [];
 
@@ -20,6 +20,7 @@ function read() {
 function apply() {
   document.documentElement.dataset.theme = chosen.theme;
   document.documentElement.dataset.motion = calm() ? "reduced" : "full";
+  document.documentElement.dataset.codes = String(chosen.codes);
   for (const listener of themeListeners) listener();
 }
 
@@ -50,6 +51,9 @@ export function startSettings() {
   theme.value = chosen.theme;
   motion.value = chosen.motion;
   announce.checked = chosen.announce;
+  const codes = document.getElementById("setting-codes");
+  codes.checked = chosen.codes;
+  codes.addEventListener("change", () => change({ codes: codes.checked }));
   theme.addEventListener("change", () => change({ theme: theme.value }));
   motion.addEventListener("change", () => change({ motion: motion.value }));
   announce.addEventListener("change", () => change({ announce: announce.checked }));

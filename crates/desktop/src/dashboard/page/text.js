@@ -16,10 +16,11 @@ export class TextPane {
     this.area = el("textarea", { id: "profile-text", wrap: "off", spellcheck: "false", autocomplete: "off", autocapitalize: "off", rows: 30,
       "aria-label": "Text of the profile", "aria-describedby": "diagnostics-count", oninput: () => this.#typed() });
     this.numbers = el("pre", { class: "line-numbers", "aria-hidden": "true" });
-    this.count = el("p", { id: "diagnostics-count", class: "quiet" });
+    this.count = el("span", { id: "diagnostics-count", class: "quiet" });
     this.list = el("ul", { id: "diagnostics", class: "diagnostics" });
     this.area.addEventListener("scroll", () => { this.numbers.scrollTop = this.area.scrollTop; });
-    this.node = el("div", { class: "text-pane" }, el("div", { class: "text-frame" }, this.numbers, this.area), el("h4", { text: "Diagnostics" }), this.count, this.list);
+    this.node = el("details", { class: "card text-pane" }, el("summary", {}, el("strong", { text: "The profile's text" }), " ", this.count),
+      el("div", { class: "text-frame" }, this.numbers, this.area), el("h4", { text: "What is wrong with it" }), this.list);
   }
 
   #typed() {
@@ -57,6 +58,7 @@ export class TextPane {
     this.#shown = shape;
     const errors = diagnostics.filter(({ severity }) => severity === "error").length;
     this.area.setAttribute("aria-invalid", String(errors > 0));
+    if (errors > 0) this.node.open = true;
     say(this.count, diagnostics.length === 0 ? "✓ Nothing is wrong." : `${plural(errors, "error")}, ${plural(diagnostics.length - errors, "warning")}.`);
     this.list.replaceChildren(...diagnostics.map((one) => this.#diagnostic(one)));
   }

@@ -26,6 +26,7 @@ use crate::calibration::result::numbers::{Number, OptionalNumbers, Pair};
 use crate::calibration::result::open::{OpenByRig, by_rig};
 use crate::calibration::result::predictive::{PredictiveCheck, checks, widening};
 use crate::tangent::SimulatedPad;
+use tactpad_core::counted::counted;
 use tactpad_core::pad::changes::Flaw;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
@@ -110,13 +111,14 @@ impl fmt::Display for FitError {
             Self::TooFew { contacts, least } => {
                 write!(
                     f,
-                    "it takes {least} contacts with nine channels at least, and here are {contacts}; measure more"
+                    "this needs at least {} with nine channels, and the table has {contacts}: measure more",
+                    counted(least, "contact")
                 )
             }
             Self::TooMany { contacts, most } => {
                 write!(
                     f,
-                    "the decoder keeps each contact, {most} at most, and here are {contacts}; take some of them with --rows {most}"
+                    "the decoder keeps each contact, {most} at most, and the table has {contacts}: take some of them with --rows {most}"
                 )
             }
             Self::OtherPlate => {

@@ -29,6 +29,7 @@ use crate::diagnosis::report::{Diagnosis, Finding, Notice};
 use crate::diagnosis::validation::gain::Rows;
 use crate::diagnosis::{Judgement, Validation, summary, with_gatekeepers};
 use crate::effect::Effect;
+use tactpad_core::counted::counted;
 use tactpad_core::tables::measured::sheet::Sheet;
 use tactpad_inference::model::Model;
 use tactpad_numeric::statistics::mean;
@@ -256,12 +257,12 @@ impl ExcludedRows {
     fn notices(&self) -> Vec<Notice> {
         let notice = |detail: String| Notice { check: "missing", channel: None, detail };
         let unlabelled = format!(
-            "{} rows have a label that is no number, or a code for none; they are left out; write down all labels of every row",
-            self.unlabelled
+            "{} with a label that is no number, or a code for none; left out; write down all labels of every row",
+            counted(self.unlabelled, "row")
         );
         let beyond = format!(
-            "{} rows have labels that the earlier recording has not; they are left out; what the channels should read there is not known",
-            self.beyond
+            "{} with labels that the earlier recording has not; left out; what the channels should read there is not known",
+            counted(self.beyond, "row")
         );
         let told = [(self.unlabelled, unlabelled), (self.beyond, beyond)];
         told.into_iter().filter(|(rows, _)| *rows > 0).map(|(_, detail)| notice(detail)).collect()

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::diagnosis::label::no_solution;
+use tactpad_core::counted::counted;
 use tactpad_inference::error::InferenceError;
 
 /// Fewest rows, of a recording and of a channel of it.
@@ -86,16 +87,18 @@ impl fmt::Display for ComparisonError {
                  go as far as there: it is stuck, or in another unit; mend that column, or leave it out with --labels"
             ),
             Self::Rows { rows, which } => {
-                write!(f, "{which} has {rows} rows with labels: it takes {ROWS_MIN} at least")
+                write!(f, "{which} has {} with labels: it takes {ROWS_MIN} at least", counted(rows, "row"))
             }
             Self::Apart(rows) => write!(
                 f,
-                "{rows} rows have labels that the earlier recording has, too: it takes {ROWS_MIN} at least; measure where the earlier one \
-                 was measured"
+                "{} with labels that the earlier recording has, too: it takes {ROWS_MIN} at least; measure where the earlier one \
+                 was measured",
+                counted(rows, "row")
             ),
             Self::Blocks(blocks) => write!(
                 f,
-                "contacts at {blocks} places, or in as many presses: it takes {BLOCKS_MIN} at least to tell a change from chance"
+                "contacts at {}, or in as many presses: it takes {BLOCKS_MIN} at least to tell a change from chance",
+                counted(blocks, "place")
             ),
             Self::Silent => f.write_str("no channel follows the labels as it did in the earlier recording; see that each row has the channels of its own contact"),
             Self::NoSolution(told) => f.write_str(told),

@@ -4,9 +4,10 @@ use super::detection::{Conventions, LabelPart};
 use super::stuck::StuckLabel;
 use super::symmetry::Readings;
 use crate::diagnosis::data::target::{LabelColumns, Target};
-use crate::diagnosis::report::{Estimate, Finding, LabelNote, Notice, rows_text};
+use crate::diagnosis::report::{Estimate, Finding, LabelNote, Notice};
 use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
+use tactpad_core::counted::counted;
 use tactpad_core::pad::wiring::permutation::SignedPermutation;
 use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS};
 use tactpad_core::tables::convention::{Frame, LabelConvention, Sign};
@@ -43,7 +44,7 @@ impl Conventions {
         let detail = format!(
             "{} between lines {first} and {last} read one finger, but on another place or with another force than written; they are left \
              out; see whether they are of this recording, and in its order",
-            rows_text(lines.len())
+            counted(lines.len(), "row")
         );
         Some(Notice { check: "labels", channel: None, detail })
     }

@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use super::unfit::PredictionError;
 use crate::effect::{Effect, EffectFamily, OwnEffect};
+use tactpad_core::counted::counted;
 use tactpad_core::tables::measured::sheet::Sheet;
 
 /// An effect, and the derivative of every channel by its number.
@@ -27,7 +28,8 @@ impl Derivative {
         if self.table.rows() != rows {
             let own = self.table.rows();
             return Err(fault(format!(
-                "{own} rows, and {rows} were measured: write one for each, in the same order"
+                "{}, and {rows} were measured: write one for each, in the same order",
+                counted(own, "row")
             )));
         }
         let known: Vec<&String> = channels.iter().filter(|name| self.table.numbers(name).is_some()).collect();

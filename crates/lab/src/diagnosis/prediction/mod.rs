@@ -20,6 +20,7 @@ use crate::diagnosis::report::{Diagnosis, Notice};
 use crate::diagnosis::simulation::atlas::chosen;
 use crate::diagnosis::{Question, Validation, concluded};
 use crate::effect::Effect;
+use tactpad_core::counted::counted;
 use tactpad_core::tables::measured::sheet::Sheet;
 use tactpad_inference::observations::Observations;
 
@@ -83,7 +84,8 @@ pub fn diagnose(
     unplaced(&mut diagnosis, &rows.columns);
     if unlabelled > 0 {
         let detail = format!(
-            "{unlabelled} rows have a label that is no number; they are left out; write down all labels of every row"
+            "{} with a label that is no number; left out; write down all labels of every row",
+            counted(unlabelled, "row")
         );
         diagnosis.gatekeepers.insert(0, Notice { check: "missing", channel: None, detail });
     }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::diagnosis::label::no_solution;
+use tactpad_core::counted::counted;
 use tactpad_inference::error::InferenceError;
 
 /// Fewest rows.
@@ -68,7 +69,9 @@ impl fmt::Display for PredictionError {
         match self {
             Self::Rows { measured, predicted } => write!(
                 f,
-                "{measured} rows were measured and {predicted} are predicted: write one prediction for each measured row, in the same order"
+                "{} measured, and {} predicted: write one prediction for each measured row, in the same order",
+                counted(measured, "row"),
+                counted(predicted, "row")
             ),
             Self::OtherRow { name, row } => write!(
                 f,
@@ -89,10 +92,11 @@ impl fmt::Display for PredictionError {
                 f,
                 "{names}: the predictions are the measured numbers themselves; write there what your model says"
             ),
-            Self::Few(rows) => write!(f, "{rows} rows with labels: it takes {ROWS_MIN} at least"),
+            Self::Few(rows) => write!(f, "{} with labels: it takes {ROWS_MIN} at least", counted(rows, "row")),
             Self::Blocks(blocks) => write!(
                 f,
-                "{blocks} places or presses: it takes {BLOCKS_MIN} at least to tell a cause from chance"
+                "{}: it takes {BLOCKS_MIN} at least to tell a cause from chance",
+                counted(blocks, "different place")
             ),
             Self::Silent => f.write_str(
                 "no channel follows its prediction: see that each row has the channels of its own label, in both tables",

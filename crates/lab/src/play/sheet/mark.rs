@@ -1,7 +1,9 @@
-//! What the sheet consists of, for both of its writers.
+//! What a sheet consists of, for both of its writers.
 
 /// A4, upright.
-pub(super) const PAGE_MM: [f64; 2] = [210.0, 297.0];
+pub(super) const A4_MM: [f64; 2] = [210.0, 297.0];
+/// As wide as A4 and as high as a Letter: it fits both.
+pub(super) const A4_AND_LETTER_MM: [f64; 2] = [210.0, 279.0];
 
 /// Something that is drawn; places are on the page, from its upper left corner, y downwards.
 #[derive(Clone, Debug, PartialEq)]

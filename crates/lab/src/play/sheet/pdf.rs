@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::mark::{Mark, PAGE_MM, number};
+use super::mark::{Mark, number};
 
 /// Points of 1/72 inch.
 const POINTS_PER_MM: f64 = 72.0 / 25.4;
@@ -10,8 +10,8 @@ const POINTS_PER_MM: f64 = 72.0 / 25.4;
 const QUARTER: f64 = 0.552_284_749_830_793_6;
 
 /// The document.
-pub(super) fn written(marks: &[Mark]) -> Vec<u8> {
-    let [width_pt, height_pt] = PAGE_MM.map(|mm| number(POINTS_PER_MM * mm));
+pub(super) fn written(page_mm: [f64; 2], marks: &[Mark]) -> Vec<u8> {
+    let [width_pt, height_pt] = page_mm.map(|mm| number(POINTS_PER_MM * mm));
     let drawing = drawing(marks, height_pt);
     let objects = [
         "<< /Type /Catalog /Pages 2 0 R >>".to_owned(),
@@ -91,11 +91,12 @@ fn circle([x_mm, y_mm]: [f64; 2], radius_mm: f64, width_mm: f64) -> String {
     path + " S"
 }
 
-/// A letter of a text in parentheses; what is not ASCII has no place in our texts.
+/// A letter of a text in parentheses. The standard font has the letters of Latin-1; for others stands a question mark.
 fn escaped(letter: char) -> String {
     match letter {
         '(' | ')' | '\\' => format!("\\{letter}"),
         ' '..='~' => letter.into(),
+        '\u{a0}'..='\u{ff}' => format!("\\{:03o}", u32::from(letter)),
         _ => '?'.into(),
     }
 }
@@ -103,6 +104,7 @@ fn escaped(letter: char) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::play::sheet::mark::A4_MM;
 
     #[test]
     fn the_table_says_where_each_object_begins() {
@@ -110,7 +112,7 @@ mod tests {
             Mark::Text { at_mm: [10.0, 20.0], size_mm: 3.0, text: "a (b) \\".into() },
             Mark::Circle { centre_mm: [50.0, 60.0], radius_mm: 10.0, width_mm: 0.2 },
         ];
-        let pdf = String::from_utf8(written(&marks)).unwrap();
+        let pdf = String::from_utf8(written(A4_MM, &marks)).unwrap();
         assert!(pdf.starts_with("%PDF-1.4\n") && pdf.ends_with("%%EOF\n"));
         let table: usize = pdf.rsplit("startxref\n").next().unwrap().lines().next().unwrap().parse().unwrap();
         let mut lines = pdf[table..].split_inclusive('\n');

@@ -2,11 +2,10 @@
 
 use std::fmt::Write;
 
-use super::mark::{Mark, PAGE_MM, number};
+use super::mark::{Mark, number};
 
 /// The document; its user unit is the millimetre.
-pub(super) fn written(marks: &[Mark]) -> String {
-    let [width, height] = PAGE_MM;
+pub(super) fn written([width, height]: [f64; 2], marks: &[Mark]) -> String {
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n\
@@ -33,10 +32,15 @@ fn element(mark: &Mark) -> String {
         }
         Mark::Text { at_mm, size_mm, text } => {
             let [x, y] = at_mm.map(number);
-            let text = text.replace('&', "&amp;").replace('<', "&lt;");
+            let text = escaped(text);
             format!(
                 "<text x=\"{x}\" y=\"{y}\" font-size=\"{size_mm}\" fill=\"black\" stroke=\"none\">{text}</text>"
             )
         }
     }
+}
+
+/// A text between tags.
+pub(super) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;")
 }

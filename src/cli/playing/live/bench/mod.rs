@@ -18,6 +18,7 @@ use crate::cli::failure::{Failure, if_read};
 use crate::cli::files::decoder_file;
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
+use crate::cli::number;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::print_json;
 use tactpad::bridge::bridge_parts::{BridgeParts, PlayingDecoder};
@@ -53,7 +54,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     device: PadOptions,
     /// A known weight to put on the middle, in grams: a coin of two euros has 8.5.
-    #[arg(long, value_name = "G", allow_hyphen_values = true)]
+    #[arg(long, value_name = "G", value_parser = number::grams, allow_hyphen_values = true)]
     weight_g: Option<f64>,
     /// Print one JSON document.
     #[arg(long)]

@@ -25,6 +25,7 @@ use crate::cli::files::destination::Destination;
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
 use crate::cli::laboratory::adapt::at_home;
+use crate::cli::number;
 use crate::cli::playing::profile;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{is_same, is_stdout, say, stdout, written_over};
@@ -65,7 +66,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     device: PadOptions,
     /// The weight that is put on the marks, in grams; without it the force's scale stays unknown.
-    #[arg(long, value_name = "G", requires = "out", allow_hyphen_values = true)]
+    #[arg(long, value_name = "G", value_parser = number::grams, requires = "out", allow_hyphen_values = true)]
     weight_g: Option<f64>,
     /// The decoder to write.
     ///

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use tactpad::pipeline::control::OutputDevice;
+use tactpad::pipeline::mapping::plain::{controls, settings, values};
+use tactpad::pipeline::mapping::read;
 use toml::{Table, Value};
 
 /// More changes than this are counted.
 const TOLD_MAX: usize = 6;
-
-/// Units by the ends of keys.
-const UNITS: [(&str, &str); 5] =
-    [("_n", " N"), ("_mm", " mm"), ("_ms", " ms"), ("_deg", "°"), ("_hz", " Hz")];
 
 /// One phrase for each change; of texts that say the same, that it is so.
 pub(super) fn changes(before: &str, after: &str) -> Vec<String> {
@@ -18,7 +17,7 @@ pub(super) fn changes(before: &str, after: &str) -> Vec<String> {
         return vec!["the text, which could not be read".into()];
     };
     let mut told = Vec::new();
-    tables("", &old, &new, &mut told);
+    tables(&Place::default(), &old, &new, &mut told);
     if told.is_empty() {
         told.push("comments or layout alone".into());
     }
@@ -30,30 +29,66 @@ pub(super) fn changes(before: &str, after: &str) -> Vec<String> {
     told
 }
 
-fn tables(place: &str, old: &Table, new: &Table, told: &mut Vec<String>) {
-    let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
-    for key in keys {
-        let place = if place.is_empty() { key.clone() } else { format!("{place} {key}") };
-        values(&place, key, old.get(key), new.get(key), told);
+/// Where something stands in a profile.
+#[derive(Clone, Default)]
+struct Place {
+    /// Its tables and its key, as settings are named.
+    setting: String,
+    /// The same for people: `button 1, press force`.
+    words: String,
+}
+
+impl Place {
+    fn key(&self, key: &str) -> Self {
+        let (dot, comma) = if self.setting.is_empty() { ("", "") } else { (".", ", ") };
+        let setting = format!("{}{dot}{key}", self.setting);
+        let words = format!("{}{comma}{}", self.words, settings::word(&setting));
+        Self { setting, words }
+    }
+
+    fn number(&self, number: usize) -> Self {
+        Self { setting: self.setting.clone(), words: format!("{} {number}", self.words) }
+    }
+
+    /// A text that stands here, for people.
+    fn text(&self, text: &str) -> String {
+        let devices = [OutputDevice::Gamepad, OutputDevice::Keyboard, OutputDevice::Pointer];
+        let device =
+            devices.into_iter().find(|it| self.setting.split('.').skip(1).any(|step| step == it.name()));
+        let keys = device.and_then(|device| read::binding(device, text));
+        keys.map_or_else(
+            || format!("“{}”", values::word(&self.setting, text)),
+            |keys| controls::all_of(&keys),
+        )
     }
 }
 
-fn values(place: &str, key: &str, old: Option<&Value>, new: Option<&Value>, told: &mut Vec<String>) {
+fn tables(place: &Place, old: &Table, new: &Table, told: &mut Vec<String>) {
+    let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
+    for key in keys {
+        compare(&place.key(key), old.get(key), new.get(key), told);
+    }
+}
+
+fn compare(place: &Place, old: Option<&Value>, new: Option<&Value>, told: &mut Vec<String>) {
+    let words = &place.words;
     match (old, new) {
         (Some(old), Some(new)) if old == new => {}
         (Some(Value::Table(old)), Some(Value::Table(new))) => tables(place, old, new, told),
-        (Some(Value::Array(old)), Some(Value::Array(new))) => lists(place, key, old, new, told),
-        (None, Some(Value::Array(new))) => lists(place, key, &[], new, told),
-        (Some(Value::Array(old)), None) => lists(place, key, old, &[], told),
-        (Some(old), Some(new)) => told.push(format!("{place} from {} to {}", said(key, old), said(key, new))),
-        (None, Some(new)) => told.push(format!("{place} added{}", of(key, new))),
-        (Some(old), None) => told.push(format!("{place} removed{}", of(key, old))),
+        (Some(Value::Array(old)), Some(Value::Array(new))) => lists(place, old, new, told),
+        (None, Some(Value::Array(new))) => lists(place, &[], new, told),
+        (Some(Value::Array(old)), None) => lists(place, old, &[], told),
+        (Some(old), Some(new)) => {
+            told.push(format!("{words} from {} to {}", said(place, old), said(place, new)));
+        }
+        (None, Some(new)) => told.push(format!("{words} added{}", of(place, new))),
+        (Some(old), None) => told.push(format!("{words} removed{}", of(place, old))),
         (None, None) => {}
     }
 }
 
 /// Lists are compared from both ends, so that one that was removed in the middle is one change.
-fn lists(place: &str, key: &str, old: &[Value], new: &[Value], told: &mut Vec<String>) {
+fn lists(place: &Place, old: &[Value], new: &[Value], told: &mut Vec<String>) {
     let same = |pair: &(&Value, &Value)| pair.0 == pair.1;
     let head = old.iter().zip(new).take_while(same).count();
     let shorter = old.len().min(new.len()) - head;
@@ -61,27 +96,25 @@ fn lists(place: &str, key: &str, old: &[Value], new: &[Value], told: &mut Vec<St
     let old = old.get(head..old.len() - tail).unwrap_or_default();
     let new = new.get(head..new.len() - tail).unwrap_or_default();
     for index in 0..old.len().max(new.len()) {
-        let place = format!("{place} {}", head + index + 1);
-        values(&place, key, old.get(index), new.get(index), told);
+        compare(&place.number(head + index + 1), old.get(index), new.get(index), told);
     }
 }
 
 /// " (2.5 N)"; nothing of what has parts.
-fn of(key: &str, value: &Value) -> String {
+fn of(place: &Place, value: &Value) -> String {
     if matches!(value, Value::Table(_) | Value::Array(_)) {
         return String::new();
     }
-    format!(" ({})", said(key, value))
+    format!(" ({})", said(place, value))
 }
 
-fn said(key: &str, value: &Value) -> String {
-    let unit = UNITS.iter().find(|(end, _)| key.ends_with(end)).map_or("", |(_, unit)| unit);
+fn said(place: &Place, value: &Value) -> String {
     match value {
-        Value::String(text) => format!("“{text}”"),
+        Value::String(text) => place.text(text),
         Value::Boolean(true) => "yes".into(),
         Value::Boolean(false) => "no".into(),
-        Value::Integer(number) => format!("{number}{unit}"),
-        Value::Float(number) => format!("{number}{unit}"),
+        Value::Integer(number) => settings::amount(&place.setting, *number as f64),
+        Value::Float(number) => settings::amount(&place.setting, *number),
         Value::Datetime(date) => date.to_string(),
         Value::Array(all) => format!("{} of them", all.len()),
         Value::Table(_) => "a table".into(),
@@ -98,10 +131,11 @@ mod tests {
     #[test]
     fn each_change_is_a_phrase() {
         for (from, to, phrase) in [
-            ("press_n = 2.0", "press_n = 2.5", "button 1 press_n from 2 N to 2.5 N"),
-            ("min_press_ms = 40\n", "", "min_press_ms removed (40 ms)"),
-            ("KEY_Z", "KEY_X", "button 1 out keyboard from “KEY_Z” to “KEY_X”"),
-            ("[dpad]", "left_handed = true\n[dpad]", "left_handed added (yes)"),
+            ("press_n = 2.0", "press_n = 2.5", "button 1, press force from 2 N to 2.5 N"),
+            ("min_press_ms = 40\n", "", "shortest press removed (40 ms)"),
+            ("KEY_Z", "KEY_X", "button 1, press, on the keyboard from Z to X"),
+            ("[dpad]", "left_handed = true\n[dpad]", "left-handed added (yes)"),
+            ("8way", "4way", "directions, kind of directions from “eight directions” to “four directions”"),
             ("[[button]]\nforce = \"fy\"\npress_n = 1.2\n", "", "button 2 removed"),
             ("[dpad]", "# a word\n[dpad]", "comments or layout alone"),
             ("[dpad]", "[dpad", "the text, which could not be read"),

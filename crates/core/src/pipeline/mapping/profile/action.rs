@@ -212,6 +212,18 @@ impl Role {
     /// In the order of a button's effects.
     pub const ALL: [Self; 6] = [Self::Out, Self::Tap, Self::Double, Self::Hold, Self::Light, Self::Hard];
 
+    /// Its place among the settings of a profile.
+    pub(crate) const fn place(self) -> &'static str {
+        match self {
+            Self::Out => "button.out",
+            Self::Tap => "button.tap",
+            Self::Double => "button.double",
+            Self::Hold => "button.hold",
+            Self::Light => "button.light",
+            Self::Hard => "button.hard",
+        }
+    }
+
     /// Its key in a profile.
     pub const fn name(self) -> &'static str {
         match self {

@@ -7,6 +7,7 @@ mod action;
 pub(crate) mod angle;
 mod axes;
 mod keys;
+mod labels;
 mod place;
 mod program;
 pub(crate) mod sector;
@@ -22,6 +23,7 @@ pub use self::action::{
 use self::angle::wrapped;
 pub use self::axes::{SIDES, Side, Source, Stick, Trigger};
 pub use self::keys::{Binding, KEYS_MAX, Keys};
+pub use self::labels::{Labelled, Labels};
 pub use self::place::{ButtonPlace, Direction, Dpad, DpadMode, Gain, Pointer, PointerMode, Zone};
 pub use self::program::Program;
 use crate::pipeline::control::{Code, OutputDevice};
@@ -165,6 +167,8 @@ pub struct Profile {
     pub triggers: ArrayVec<Trigger, SIDES>,
     /// Buttons, in the file's order.
     pub buttons: ArrayVec<Button, BUTTONS_MAX>,
+    /// What its parts do in the game, as a person named it.
+    pub labels: Labels,
 }
 
 impl Profile {

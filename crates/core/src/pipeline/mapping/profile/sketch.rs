@@ -1,14 +1,17 @@
-//! A profile as it is drawn: all numbers resolved, mirrored for the left hand as it is played, names as a profile writes them.
+//! A profile as it is drawn: all numbers resolved, mirrored for the left hand as it is played, names as a profile writes them, and
+//! beside them the words that people read.
+
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 
 use super::place::{Direction, Dpad, Pointer, Zone};
 use super::sector;
-use super::words::{COMMANDS, DPAD_MODES, FORCES, POINTER_MODES, SIDES, SOURCES};
+use super::words::{COMMANDS, DPAD_MODES, FORCES, POINTER_MODES, SIDES, SOURCES, word};
 use super::{
     Action, Button, ButtonPlace, Command, Effect, Mode, Output, Profile, Role, Stick, Trigger, When,
 };
-use crate::pipeline::control::Code;
+use crate::pipeline::mapping::plain::{controls, named, settings};
 
 /// A profile as it is drawn. Angles in degrees counter-clockwise from right; `centre_mm` is where the hand has its centre.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -33,6 +36,8 @@ pub struct Sketch {
     pub triggers: Vec<TriggerForces>,
     /// Its buttons, in the file's order.
     pub buttons: Vec<ButtonForces>,
+    /// What controls do in the game, by the controls.
+    pub labels: BTreeMap<String, String>,
 }
 
 /// Directions as they are drawn.
@@ -69,6 +74,10 @@ pub struct SectorOutline {
     pub to_deg: f32,
     /// The names of the directions.
     pub directions: Vec<&'static str>,
+    /// What people read there,
+    pub word: String,
+    /// at this place of the plate.
+    pub word_at_mm: [f32; 2],
 }
 
 /// A zone as it is drawn.
@@ -84,6 +93,8 @@ pub struct ZoneSketch {
     pub inner_radius_mm: f32,
     /// It ends at this one.
     pub outer_radius_mm: f32,
+    /// Its name stands at this place of the plate.
+    pub name_at_mm: [f32; 2],
 }
 
 /// The pointer's rings.
@@ -99,6 +110,8 @@ pub struct PointerRings {
     pub min_force_n: f32,
     /// See [`Pointer::release_force_n`].
     pub release_force_n: f32,
+    /// Its name stands at this place of the plate.
+    pub word_at_mm: [f32; 2],
 }
 
 /// From where to where a stick moves.
@@ -112,6 +125,10 @@ pub struct StickReach {
     pub centre: f32,
     /// From here on it is at its end.
     pub full: f32,
+    /// What people read of it,
+    pub word: String,
+    /// at this place of the plate, where the place moves it.
+    pub word_at_mm: [f32; 2],
 }
 
 /// From where to where a trigger moves.
@@ -123,6 +140,8 @@ pub struct TriggerForces {
     pub from_n: f32,
     /// From here on it is at its end.
     pub full_n: f32,
+    /// What people read of it.
+    pub word: String,
 }
 
 /// A button's thresholds and times.
@@ -130,6 +149,8 @@ pub struct TriggerForces {
 pub struct ButtonForces {
     /// Its number in the file, from 1.
     pub number: usize,
+    /// What people call it: what it does.
+    pub word: String,
     /// `fz`, `fx`, `-fx`, `fy` or `-fy`.
     pub force: &'static str,
     /// See [`Button::press_n`].
@@ -159,8 +180,12 @@ pub struct ButtonForces {
 pub struct EffectLabel {
     /// The kind of press, as its key in the profile.
     pub role: &'static str,
+    /// The same for people: `short press`.
+    pub role_word: &'static str,
     /// Names of controls with `+` between them, or what it acts on in words.
     pub keys: String,
+    /// What people read of it: `A: jump`.
+    pub word: String,
 }
 
 impl Sketch {
@@ -171,26 +196,52 @@ impl Sketch {
             output: profile.output.name(),
             centre_mm: profile.centre_mm,
             filter_samples: profile.filter_samples,
-            dpad: profile.dpad.as_ref().map(DpadSketch::of),
-            zones: profile.zones.iter().map(ZoneSketch::of).collect(),
-            pointer: profile.pointer.as_ref().map(PointerRings::of),
-            sticks: profile.sticks.iter().map(StickReach::of).collect(),
-            triggers: profile.triggers.iter().map(TriggerForces::of).collect(),
+            dpad: profile.dpad.as_ref().map(|dpad| DpadSketch::of(dpad, profile)),
+            zones: profile.zones.iter().map(|it| ZoneSketch::of(it, profile.centre_mm)).collect(),
+            pointer: profile.pointer.as_ref().map(|it| PointerRings::of(it, profile.centre_mm)),
+            sticks: profile.sticks.iter().map(|it| StickReach::of(it, profile)).collect(),
+            triggers: profile.triggers.iter().map(|it| TriggerForces::of(it, profile)).collect(),
             buttons: (1..)
                 .zip(&profile.buttons)
                 .map(|(number, it)| ButtonForces::of(number, it, profile))
                 .collect(),
+            labels: named::labels(profile),
         }
     }
 }
 
-/// The word of a value.
-fn word<T: PartialEq>(words: &[(&'static str, T)], of: &T) -> &'static str {
-    words.iter().find(|(_, value)| value == of).map_or("", |(word, _)| word)
+/// Radius of the plate that profiles count on.
+pub const PLATE_MM: f32 = 30.0;
+/// The word of a direction stands so far from the hand's centre,
+const DIRECTION_MM: f32 = 23.0;
+/// and where directions begin too far out for that, beside the plate.
+const OUTSIDE_MM: f32 = 32.0;
+/// Between up and the diagonal.
+const RING_WORD_DEG: f32 = 60.0;
+/// The name of a zone stands so far from its inner edge at most, where the words of directions leave room.
+const ZONE_NAME_MM: f32 = 3.5;
+
+/// A place by its angle and its distance from a centre.
+pub fn polar(centre_mm: [f32; 2], deg: f32, radius_mm: f32) -> [f32; 2] {
+    let (sin, cos) = libm::sincosf(deg.to_radians());
+    [centre_mm[0] + radius_mm * cos, centre_mm[1] + radius_mm * sin]
+}
+
+/// The same, so far within the plate that a word has room.
+fn on_plate(centre_mm: [f32; 2], deg: f32, radius_mm: f32) -> [f32; 2] {
+    let [x_mm, y_mm] = polar(centre_mm, deg, radius_mm);
+    let far_mm = libm::hypotf(x_mm, y_mm);
+    let share = if far_mm > PLATE_MM - 5.0 { (PLATE_MM - 5.0) / far_mm } else { 1.0 };
+    [x_mm * share, y_mm * share]
+}
+
+/// Where the word of a ring stands.
+fn beside_ring(centre_mm: [f32; 2], radius_mm: f32) -> [f32; 2] {
+    on_plate(centre_mm, RING_WORD_DEG, radius_mm - 2.2)
 }
 
 impl DpadSketch {
-    fn of(dpad: &Dpad) -> Self {
+    fn of(dpad: &Dpad, profile: &Profile) -> Self {
         Self {
             mode: word(&DPAD_MODES, &dpad.mode),
             centre_radius_mm: dpad.centre_radius_mm,
@@ -202,55 +253,90 @@ impl DpadSketch {
             min_force_n: dpad.min_force_n,
             release_force_n: dpad.release_force_n,
             sectors: sector::parts(dpad)
-                .map(|(from_deg, to_deg, held)| SectorOutline::of([from_deg, to_deg], held))
+                .map(|(from_deg, to_deg, held)| SectorOutline::of([from_deg, to_deg], held, profile))
                 .collect(),
         }
     }
 }
 
 impl SectorOutline {
-    fn of([from_deg, to_deg]: [f32; 2], held: impl Fn(Direction) -> bool) -> Self {
-        let held = Direction::ALL.into_iter().filter(|direction| held(*direction));
-        Self { from_deg, to_deg, directions: held.map(Direction::name).collect() }
+    fn of([from_deg, to_deg]: [f32; 2], held: impl Fn(Direction) -> bool, profile: &Profile) -> Self {
+        let held: Vec<_> = Direction::ALL.into_iter().filter(|direction| held(*direction)).collect();
+        let word = match held[..] {
+            [] => "keeps the last".into(),
+            [direction] => named::direction(profile, direction),
+            _ => held.iter().map(|it| it.name()).collect::<Vec<_>>().join(" + "),
+        };
+        let deg = from_deg + 0.5 * (to_deg - from_deg).rem_euclid(360.0);
+        let starts_mm = profile.dpad.as_ref().map_or(0.0, |dpad| dpad.centre_radius_mm);
+        let word_at_mm = if starts_mm > DIRECTION_MM - 2.0 {
+            polar(profile.centre_mm, deg, OUTSIDE_MM)
+        } else {
+            on_plate(profile.centre_mm, deg, DIRECTION_MM)
+        };
+        let directions = held.into_iter().map(Direction::name).collect();
+        Self { from_deg, to_deg, directions, word, word_at_mm }
     }
 }
 
 impl ZoneSketch {
-    fn of(zone: &Zone) -> Self {
+    fn of(zone: &Zone, centre_mm: [f32; 2]) -> Self {
         let edges = (zone.half_width_deg < 180.0)
             .then_some((zone.middle_deg - zone.half_width_deg, zone.middle_deg + zone.half_width_deg));
+        let middle_mm = (zone.inner_radius_mm + zone.outer_radius_mm.min(PLATE_MM - 3.0)) / 2.0;
+        let (deg, radius_mm) = match edges {
+            Some(_) if zone.inner_radius_mm > 0.0 => {
+                (zone.middle_deg, middle_mm.min(zone.inner_radius_mm + ZONE_NAME_MM))
+            }
+            Some(_) => (zone.middle_deg, middle_mm),
+            None if zone.inner_radius_mm == 0.0 => (90.0, 0.0),
+            None => (90.0, middle_mm),
+        };
         Self {
             name: zone.name.clone(),
             from_deg: edges.map(|(from_deg, _)| from_deg),
             to_deg: edges.map(|(_, to_deg)| to_deg),
             inner_radius_mm: zone.inner_radius_mm,
             outer_radius_mm: zone.outer_radius_mm,
+            name_at_mm: on_plate(centre_mm, deg, radius_mm),
         }
     }
 }
 
 impl PointerRings {
-    fn of(pointer: &Pointer) -> Self {
+    fn of(pointer: &Pointer, centre_mm: [f32; 2]) -> Self {
         Self {
             mode: word(&POINTER_MODES, &pointer.mode),
             centre_radius_mm: pointer.centre_radius_mm,
             full_radius_mm: pointer.full_radius_mm,
             min_force_n: pointer.min_force_n,
             release_force_n: pointer.release_force_n,
+            word_at_mm: beside_ring(centre_mm, pointer.full_radius_mm),
         }
     }
 }
 
 impl StickReach {
-    fn of(stick: &Stick) -> Self {
-        let from = word(&SOURCES, &stick.source);
-        Self { stick: word(&SIDES, &stick.side), from, centre: stick.rest, full: stick.full }
+    fn of(stick: &Stick, profile: &Profile) -> Self {
+        Self {
+            stick: word(&SIDES, &stick.side),
+            from: word(&SOURCES, &stick.source),
+            centre: stick.rest,
+            full: stick.full,
+            word: named::stick(profile, stick.side),
+            word_at_mm: beside_ring(profile.centre_mm, stick.full),
+        }
     }
 }
 
 impl TriggerForces {
-    fn of(trigger: &Trigger) -> Self {
-        Self { trigger: word(&SIDES, &trigger.side), from_n: trigger.from_n, full_n: trigger.full_n }
+    fn of(trigger: &Trigger, profile: &Profile) -> Self {
+        Self {
+            trigger: word(&SIDES, &trigger.side),
+            from_n: trigger.from_n,
+            full_n: trigger.full_n,
+            word: named::trigger(profile, trigger.side),
+        }
     }
 }
 
@@ -268,8 +354,10 @@ impl ButtonForces {
             Action::Hold(_) | Action::ByForce { .. } => (None, None),
         };
         let effects = Role::ALL.into_iter().zip(button.effects());
+        let index = number - 1;
         Self {
             number,
+            word: named::button(profile, index).unwrap_or_default(),
             force: word(&FORCES, &button.force),
             press_n: button.press_n,
             release_n: button.release_n,
@@ -281,7 +369,7 @@ impl ButtonForces {
             zone: button.place.and_then(|place| place_name(place, profile)),
             layer: layer_name(button.when, profile),
             does: effects
-                .filter_map(|(role, effect)| Some(EffectLabel::of(role, &effect?, profile)))
+                .filter_map(|(role, effect)| Some(EffectLabel::of(index, role, &effect?, profile)))
                 .collect(),
         }
     }
@@ -303,11 +391,14 @@ fn layer_name(when: When, profile: &Profile) -> Option<String> {
 }
 
 impl EffectLabel {
-    fn of(role: Role, effect: &Effect, profile: &Profile) -> Self {
+    fn of(index: usize, role: Role, effect: &Effect, profile: &Profile) -> Self {
         let acts_on = match &effect.output {
-            Output::Keys(_) => {
-                effect.output.bindings().map(|it| control(it.code, it.value)).collect::<Vec<_>>().join("+")
-            }
+            Output::Keys(_) => effect
+                .output
+                .bindings()
+                .map(|it| controls::written(it.code, it.value))
+                .collect::<Vec<_>>()
+                .join("+"),
             Output::Layer(number) => {
                 profile.layers.get(*number).map_or_else(String::new, |it| format!("layer {}", it.name))
             }
@@ -323,15 +414,12 @@ impl EffectLabel {
             Mode::Sticky => ", sticky".into(),
             Mode::Turbo { period_us } => format!(", turbo {} ms", period_us / 1_000),
         };
-        Self { role: role.name(), keys: acts_on + &follows }
-    }
-}
-
-/// A control with its side, as bindings have it.
-pub fn control(code: Code, value: i32) -> String {
-    match code {
-        Code::Key(_) => code.to_string(),
-        Code::Axis(_) | Code::Relative(_) => format!("{code}{}", if value < 0 { '-' } else { '+' }),
+        Self {
+            role: role.name(),
+            role_word: settings::word(role.place()),
+            keys: acts_on + &follows,
+            word: named::effect(profile, index, role, effect),
+        }
     }
 }
 
@@ -371,8 +459,15 @@ mod tests {
     fn buttons_say_what_their_presses_do() {
         let sketch = sketch("super-mario");
         let [first, ..] = &sketch.buttons[..] else { panic!("no button") };
-        let does: Vec<_> = first.does.iter().map(|it| (it.role, it.keys.as_str())).collect();
-        assert_eq!((first.force, does), ("fz", vec![("tap", "BTN_SOUTH"), ("hold", "BTN_EAST")]));
+        let does: Vec<_> =
+            first.does.iter().map(|it| (it.role, it.keys.as_str(), it.word.as_str())).collect();
+        let expected = vec![("tap", "BTN_SOUTH", "A: jump"), ("hold", "BTN_EAST", "B: run and fire")];
+        assert_eq!((first.force, does), ("fz", expected));
+        assert_eq!(
+            (first.word.as_str(), first.does[1].role_word),
+            ("A: jump / B: run and fire", "long press")
+        );
+        assert_eq!(sketch.labels.get("BTN_EAST").map(String::as_str), Some("run and fire"));
         assert!(first.long_press_ms.is_some() && first.double_press_ms.is_none());
     }
 }

@@ -2,6 +2,11 @@
 
 use super::{Command, DpadMode, Force, PointerMode, Side, Source};
 
+/// The word of a value.
+pub(crate) fn word<T: PartialEq>(words: &[(&'static str, T)], of: &T) -> &'static str {
+    words.iter().find(|(_, value)| value == of).map_or("", |(word, _)| word)
+}
+
 /// How the directions divide the plate.
 pub(crate) const DPAD_MODES: [(&str, DpadMode); 3] =
     [("4way", DpadMode::FourWay), ("4way-sticky", DpadMode::FourWaySticky), ("8way", DpadMode::EightWay)];

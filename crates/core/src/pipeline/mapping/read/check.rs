@@ -8,9 +8,10 @@ use crate::pipeline::control::OutputDevice;
 use crate::pipeline::mapping::profile::Program;
 use crate::pipeline::mapping::profile::words::POINTER_MODES;
 use crate::pipeline::mapping::profile::{
-    Access, BUTTONS_MAX, Direction, Gain, Pointer, PointerMode, Profile, Stick, Trigger, Zone,
+    Access, BUTTONS_MAX, Direction, Gain, Labels, Pointer, PointerMode, Profile, Stick, Trigger, Zone,
 };
 use crate::pipeline::mapping::read::common::conflict::{self, Use};
+use crate::pipeline::mapping::read::common::labels;
 use crate::pipeline::mapping::read::common::limits::{
     CURVE, FILTER_SAMPLES, FULL_RADIUS_MM, MIN_PRESS_MS, POINTER_CENTRE_MM, SPEED_COUNTS_PER_S,
 };
@@ -120,6 +121,7 @@ struct ProfileDraft {
     sticks: Vec<Option<Stick>>,
     triggers: Vec<Option<Trigger>>,
     buttons: Vec<ButtonDraft>,
+    labels: Labels,
 }
 
 impl ProfileDraft {
@@ -163,6 +165,7 @@ impl ProfileDraft {
             sticks: axes::read_sticks(root, findings),
             triggers: axes::read_triggers(root, &zones, has_dpad, findings),
             buttons: buttons.iter().map(|button| ButtonDraft::read(button, around, findings)).collect(),
+            labels: labels::read(root, findings),
             zones,
             zone_places,
             layers,
@@ -214,6 +217,7 @@ impl ProfileDraft {
             sticks: played(self.sticks, output)?,
             triggers: played(self.triggers, output)?,
             buttons,
+            labels: self.labels,
         };
         Some(if self.left_handed? { profile.mirrored() } else { profile })
     }

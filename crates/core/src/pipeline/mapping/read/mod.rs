@@ -10,8 +10,14 @@ pub mod shear;
 pub mod shipped;
 
 use self::check::OutputChoice;
-use super::profile::Profile;
+use super::profile::{Keys, Profile};
+use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Diagnostic;
+
+/// The controls that a binding of a device names, as `BTN_SOUTH` or `KEY_LEFTCTRL+KEY_C`; `None` where it names none of that device.
+pub fn binding(device: OutputDevice, text: &str) -> Option<Keys> {
+    common::binding::parse_all(device, text).ok()
+}
 
 /// A profile that can be used, and the text that says the same.
 #[derive(Clone, Debug, PartialEq)]

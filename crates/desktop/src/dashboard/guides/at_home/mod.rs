@@ -167,6 +167,7 @@ fn name_of(pad: &ConnectedPad) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
     use std::path::PathBuf;
     use std::sync::PoisonError;
 
@@ -353,6 +354,8 @@ mod tests {
             gain: 1.0,
             weighing: None,
             changes: None,
+            held_names: Vec::new(),
+            labels: BTreeMap::new(),
         }
     }
 

@@ -8,8 +8,9 @@ use super::steps::least_gap;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
 use crate::diagnosis::gatekeepers::prediction::Fitted;
-use crate::diagnosis::report::{Estimate, rows_text};
+use crate::diagnosis::report::Estimate;
 use crate::effect::Effect;
+use tactpad_core::counted::counted;
 use tactpad_numeric::statistics::{mean, population_deviation};
 
 /// Fewest rows at a limit.
@@ -47,7 +48,7 @@ pub(crate) fn check(gate: &mut Gate) {
                 "{} stops at {} in {}{larger}; these have no weight; press less, or take a smaller gain",
                 gate.name(channel),
                 rail.limit,
-                rows_text(rail.rows.len())
+                counted(rail.rows.len(), "row")
             );
             gate.notice("clipping", Some(channel), detail);
         }

@@ -4,7 +4,7 @@
 //! one time the first has weight. A clock that hardly ever moves tells no order, and is only reported.
 
 use crate::diagnosis::gatekeepers::gate::Gate;
-use crate::diagnosis::report::rows_text;
+use tactpad_core::counted::counted;
 use tactpad_numeric::statistics::{Line, deviation};
 
 /// So many rows that are earlier than one before them came late; of more, the clock was set back.
@@ -38,14 +38,14 @@ pub(crate) fn check(gate: &mut Gate) {
     if late > 0 {
         let detail = format!(
             "{} of time series come after a later one; the series are sorted by t_s; see whether the recorder buffers",
-            rows_text(late)
+            counted(late, "row")
         );
         gate.notice("time", None, detail);
     }
     if resets > 0 {
         let detail = format!(
             "t_s goes back for good at {} of time series; what follows counts as a series of its own; give it a trial of its own",
-            rows_text(resets)
+            counted(resets, "row")
         );
         gate.notice("time", None, detail);
     }
@@ -92,7 +92,7 @@ fn doubled(gate: &mut Gate) {
         let detail = format!(
             "{} have the time of the row before; the first of each keeps its weight, the others have none; see whether the \
              recorder writes samples twice",
-            rows_text(doubled.len())
+            counted(doubled.len(), "row")
         );
         gate.notice("time", None, detail);
     }
@@ -100,7 +100,7 @@ fn doubled(gate: &mut Gate) {
         let detail = format!(
             "{} of time series have the time of the row before: t_s is written too coarsely; nothing is changed, but what goes \
              with time is seen less well; write more digits",
-            rows_text(coarse)
+            counted(coarse, "row")
         );
         gate.notice("time", None, detail);
     }

@@ -9,8 +9,8 @@
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
 use crate::diagnosis::gatekeepers::prediction::explained;
-use crate::diagnosis::report::rows_text;
 use crate::effect::Effect;
+use tactpad_core::counted::counted;
 use tactpad_numeric::chi_square;
 use tactpad_numeric::statistics::squares;
 
@@ -28,7 +28,7 @@ pub(crate) fn check(gate: &mut Gate) {
             "{} follows no load, in none of its {}; the channel is left out and the others are diagnosed; plot it against a \
              neighbour, then look at its wire and its gauge",
             gate.name(channel),
-            rows_text(rows.len())
+            counted(rows.len(), "row")
         );
         let share = gate.mended(|gate| gate.mask(channel, &rows));
         gate.notice("dead", Some(channel), detail);

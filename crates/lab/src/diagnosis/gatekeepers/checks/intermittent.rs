@@ -17,8 +17,9 @@
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
 use crate::diagnosis::gatekeepers::prediction::Fitted;
-use crate::diagnosis::report::{Estimate, rows_text};
+use crate::diagnosis::report::Estimate;
 use crate::effect::Effect;
+use tactpad_core::counted::counted;
 use tactpad_inference::observations::Sample;
 use tactpad_inference::policy::WITHIN_95;
 use tactpad_numeric::statistics::{rms, squares};
@@ -78,7 +79,7 @@ pub(crate) fn check(gate: &mut Gate) {
             "{} reads {ratio:.3} times as much in {}, and goes there and back; these have no weight; move its wires and its \
              connector while the pad is under a weight",
             gate.name(*channel),
-            rows_text(loose.len())
+            counted(loose.len(), "row")
         );
         let share = loose.len() as f64 / it.rows.len() as f64;
         let taken = gate.mended(|gate| gate.mask(*channel, &loose));

@@ -9,8 +9,9 @@
 use super::line::{RowRun, Waves};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
-use crate::diagnosis::report::{Estimate, NotDetected, NotTestable, rows_text};
+use crate::diagnosis::report::{Estimate, NotDetected, NotTestable};
 use crate::effect::Effect;
+use tactpad_core::counted::counted;
 use tactpad_inference::policy::{POWER, WITHIN_95};
 use tactpad_numeric::chi_square;
 use tactpad_numeric::statistics::mean;
@@ -281,7 +282,7 @@ fn take_out(gate: &mut Gate, channel: usize, stretches: &[RowRun], residual: &[f
         gate.name(channel),
         peak.amplitude,
         peak.frequency_hz,
-        rows_text(rows)
+        counted(rows, "row")
     );
     let within = |value: f64, spread: f64| [(value - spread).max(0.0), value + spread];
     let estimates = vec![

@@ -6,7 +6,7 @@
 //! around them are next to them.
 
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
-use crate::diagnosis::report::rows_text;
+use tactpad_core::counted::counted;
 
 /// Fewest rows of a code.
 const ROWS_MIN: usize = 3;
@@ -38,7 +38,7 @@ pub(crate) fn check(gate: &mut Gate) {
                 "{} reads {code} in {}, which no reading around it is near: a code for a missing one; these have no weight; leave \
                  such cells empty, or name the code where the file is written",
                 gate.name(channel),
-                rows_text(rows.len())
+                counted(rows.len(), "row")
             );
             gate.mask(channel, &rows);
             gate.notice("missing", Some(channel), detail);
@@ -65,7 +65,7 @@ fn unwritten(gate: &mut Gate) {
     (0..gate.channels()).for_each(|channel| gate.mask(channel, &rows));
     let detail = format!(
         "{} have a place or a load that is no number; they have no weight; write both down for every row",
-        rows_text(rows.len())
+        counted(rows.len(), "row")
     );
     gate.notice("missing", None, detail);
 }
@@ -82,7 +82,7 @@ fn not_numbers(gate: &mut Gate, channel: usize) {
     let detail = format!(
         "{} has no number in {}; these have no weight; see what the recorder writes there",
         gate.name(channel),
-        rows_text(rows.len())
+        counted(rows.len(), "row")
     );
     gate.notice("missing", Some(channel), detail);
 }
@@ -119,7 +119,7 @@ fn wild(gate: &mut Gate, channel: usize, ordinary: &[Option<[f64; 2]>]) {
          writes there",
         gate.name(channel),
         readings[*first],
-        rows_text(rows.len())
+        counted(rows.len(), "row")
     );
     gate.mask(channel, &rows);
     gate.notice("missing", Some(channel), detail);

@@ -3,7 +3,7 @@
 //! The step is the least distance of two values, if all distances are whole multiples of it.
 
 use crate::diagnosis::gatekeepers::gate::Gate;
-use crate::diagnosis::report::rows_text;
+use tactpad_core::counted::counted;
 use tactpad_numeric::statistics::median;
 
 /// Values in all for a step to be told, and distances from a multiple that digits of a file may leave.
@@ -33,7 +33,7 @@ pub(crate) fn check(gate: &mut Gate) {
             "{} goes in steps of {step:.6}, more than its noise of {noise:.3}, in all its {}; nothing is changed: steps count \
              as noise; a larger gain before the converter would use it better",
             gate.name(channel),
-            rows_text(rows.len())
+            counted(rows.len(), "row")
         );
         gate.notice("steps", Some(channel), detail);
     }

@@ -4,7 +4,7 @@
 //! somewhere in n rows has at most the probability n pᵏ.
 
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
-use crate::diagnosis::report::rows_text;
+use tactpad_core::counted::counted;
 use tactpad_numeric::statistics::{median, squares};
 
 /// Others move if their mean square in the stretch is this part of that of all rows: a third of its deviation.
@@ -28,7 +28,7 @@ pub(crate) fn check(gate: &mut Gate) {
             "{} repeats one value to the last digit in {} of {} that stand together, while other channels move; these have no \
              weight; look for a loose contact or a frozen converter",
             gate.name(channel),
-            rows_text(rows.len()),
+            counted(rows.len(), "row"),
             if stuck.len() == 1 { "a stretch".to_owned() } else { format!("{} stretches", stuck.len()) }
         );
         gate.mask(channel, &rows);
@@ -60,7 +60,7 @@ fn keep_first(gate: &mut Gate, channel: usize) {
         "{} changes only at one row in {every}: it is sampled less often than the table has rows; the {} that repeat a reading \
          have no weight; write each channel at its own times",
         gate.name(channel),
-        rows_text(repeats.len())
+        counted(repeats.len(), "row")
     );
     gate.mask(channel, &repeats);
     gate.notice("rates", Some(channel), detail);

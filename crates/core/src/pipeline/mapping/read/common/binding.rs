@@ -98,7 +98,7 @@ fn written(
 
 /// Why a text is no binding for a device, and what to write instead.
 #[derive(Debug)]
-struct Misfit {
+pub(crate) struct Misfit {
     message: String,
     help: String,
 }
@@ -108,7 +108,7 @@ fn misfit<T>(message: String, help: impl Into<String>) -> Result<T, Misfit> {
 }
 
 /// Names with + between them. A + or - right after an axis is its direction: `ABS_HAT0X++BTN_SOUTH`.
-fn parse_all(device: OutputDevice, text: &str) -> Result<Keys, Misfit> {
+pub(crate) fn parse_all(device: OutputDevice, text: &str) -> Result<Keys, Misfit> {
     let mut names: Vec<String> = Vec::new();
     for part in text.split('+') {
         match names.last_mut() {

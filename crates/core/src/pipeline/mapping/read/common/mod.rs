@@ -2,5 +2,6 @@
 
 pub(crate) mod binding;
 pub(crate) mod conflict;
+pub(crate) mod labels;
 pub(crate) mod limits;
 pub(crate) mod named;

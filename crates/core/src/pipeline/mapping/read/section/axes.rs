@@ -6,6 +6,7 @@ use crate::pipeline::control::OutputDevice;
 use crate::pipeline::mapping::profile::Zone;
 use crate::pipeline::mapping::profile::words::{SIDES, SOURCES};
 use crate::pipeline::mapping::profile::{Side, Source, Stick, Trigger};
+use crate::pipeline::mapping::read::common::labels::LABEL;
 use crate::pipeline::mapping::read::common::limits::{
     FULL_RADIUS_MM, SHEAR_FULL_N, SHEAR_REST_N, STICK_CENTRE_MM, STICK_CURVE, TRIGGER_FROM_N, TRIGGER_FULL_N,
 };
@@ -13,7 +14,7 @@ use crate::pipeline::mapping::read::common::named;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::{Bounds, Placed, Section};
 
-const STICK_KEYS: [&str; 9] = [
+const STICK_KEYS: [&str; 10] = [
     "stick",
     "from",
     "centre_radius_mm",
@@ -23,9 +24,9 @@ const STICK_KEYS: [&str; 9] = [
     "curve",
     "min_force_n",
     "release_force_n",
+    LABEL,
 ];
-const TRIGGER_KEYS: [&str; 5] = ["trigger", "from_n", "full_n", "curve", "zone"];
-/// The gamepad has one on each side.
+const TRIGGER_KEYS: [&str; 6] = ["trigger", "from_n", "full_n", "curve", "zone", LABEL];
 /// The numbers of each source.
 const PLACE_KEYS: [&str; 2] = ["centre_radius_mm", "full_radius_mm"];
 const SHEAR_KEYS: [&str; 2] = ["centre_n", "full_n"];

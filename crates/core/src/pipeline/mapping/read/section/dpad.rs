@@ -5,6 +5,7 @@ use crate::pipeline::mapping::profile::words::DPAD_MODES;
 use crate::pipeline::mapping::profile::{Direction, Dpad, DpadMode, When};
 use crate::pipeline::mapping::read::common::binding::{Outputs, written_or};
 use crate::pipeline::mapping::read::common::conflict::{Owner, Use};
+use crate::pipeline::mapping::read::common::labels::LABEL;
 use crate::pipeline::mapping::read::common::limits::{
     CENTRE_RADIUS_MM, DIAGONAL_DEG, FORCE_N, HYSTERESIS_DEG, HYSTERESIS_MM, RADIUS_HYSTERESIS_MM,
     RELEASE_RATIO, ROTATION_DEG, STICKY_DIAGONAL_DEG,
@@ -12,7 +13,7 @@ use crate::pipeline::mapping::read::common::limits::{
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::{Bounds, Placed, Section};
 
-pub(crate) const DPAD_KEYS: [&str; 11] = [
+pub(crate) const DPAD_KEYS: [&str; 12] = [
     "mode",
     "centre_radius_mm",
     "radius_hysteresis_mm",
@@ -24,6 +25,7 @@ pub(crate) const DPAD_KEYS: [&str; 11] = [
     "rotation_deg",
     "gamepad",
     "keyboard",
+    LABEL,
 ];
 /// A direction's bindings on the gamepad and the keyboard, where none is written.
 const fn defaults(direction: Direction) -> [&'static str; 2] {
@@ -63,6 +65,7 @@ impl DpadDraft {
             Some(_) => table.word("mode", &DPAD_MODES, findings).map(|word| word.value),
             None => Some(DpadMode::FourWay),
         };
+        table.table(LABEL, "[dpad.label]".into(), &Direction::NAMES, findings);
         Self { shape: read_shape(table, mode, findings), mode, directions: read_directions(table, findings) }
     }
 

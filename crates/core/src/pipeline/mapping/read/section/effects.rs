@@ -6,6 +6,7 @@ use crate::pipeline::control::OutputDevice;
 use crate::pipeline::mapping::profile::words::COMMANDS;
 use crate::pipeline::mapping::profile::{Command, Effect, Mode, Output, Role};
 use crate::pipeline::mapping::read::common::binding::{DEVICE_KEYS, Outputs, with_keys};
+use crate::pipeline::mapping::read::common::labels::LABEL;
 use crate::pipeline::mapping::read::common::limits::TURBO_MS;
 use crate::pipeline::mapping::read::common::named;
 use crate::toml_text::diag::{Findings, quoted};
@@ -48,7 +49,7 @@ impl EffectDraft {
         findings: &mut Findings<'_>,
     ) -> Option<Self> {
         let title = format!("\"{}\" of {}", role.name(), table.title);
-        let known = with_keys(&[TARGET_KEYS, MODE_KEYS].concat());
+        let known = with_keys(&[&TARGET_KEYS[..], &MODE_KEYS, &[LABEL]].concat());
         let section = table.table(role.name(), title, &known, findings)?;
         let target = Target::read(&section, around, findings);
         Some(Self { target, mode: read_mode(&section, role, around.min_press_ms, findings) })

@@ -129,7 +129,14 @@ impl World {
     /// Whether frames that come again end a contact and nothing else: the pad plays, and they are known, or too few to be a run that it
     /// began.
     fn is_dropped(&self, age: u32, frames: u32) -> bool {
-        self.judge.causes.have_passed(self.play.now) && (age <= KNOWN as u32 || frames.min(age) < 3)
+        let first = self.play.sequence.wrapping_sub(age);
+        let is_of_midst = |number: u32| {
+            let mut sent = self.play.sent.iter().rev();
+            sent.find(|sent| sent.sequence == number).is_some_and(|sent| !sent.status.restarted())
+        };
+        let are_few = age <= KNOWN as u32 || frames.min(age) < 3;
+        let are_of_midst = (0..frames.min(age)).all(|back| is_of_midst(first.wrapping_add(back)));
+        self.judge.causes.have_passed(self.play.now) && are_few && are_of_midst
     }
 
     fn send_if_plugged(&mut self, bytes: &[u8]) -> Result<(), Broken> {

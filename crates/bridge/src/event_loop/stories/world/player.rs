@@ -2,6 +2,9 @@
 
 use super::*;
 
+/// What presses with less may not be felt, N.
+const FELT_N: f32 = 0.3;
+
 impl World {
     pub(super) fn touch(&mut self, contact: Contact) {
         let presses_anew = self.contact == AWAY && contact == RIGHT;
@@ -10,7 +13,9 @@ impl World {
         self.is_zero_old &= is_touched;
         self.is_staying = false;
         let begins_early = !was_touched && !self.judge.causes.have_passed(self.play.now);
-        self.is_zero_under = is_touched && (self.is_zero_under || begins_early);
+        // One that is too weak to be felt becomes the zero.
+        let is_felt = contact.fz_n > FELT_N;
+        self.is_zero_under = is_touched && (self.is_zero_under || begins_early || !is_felt);
         self.judge.excuse();
         if presses_anew && self.frozen_until.is_none() {
             self.judge.press(self.play.now);

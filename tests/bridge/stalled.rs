@@ -147,7 +147,7 @@ fn capture_not_read() {
     let mut bridge = start(folder, &format!("record {}", path.display()));
     assert!(comes_true(|| bridge.status()["health"]["samples"].as_u64() > Some(1_000)));
     assert_eq!(ended(&mut bridge).code(), Some(1), "{}", bridge.told());
-    assert!(bridge.told().contains("did not take what was recorded: its last"), "{}", bridge.told());
+    assert!(bridge.told().contains("calls missing at its end"), "{}", bridge.told());
 }
 
 #[test]

@@ -150,7 +150,7 @@ fn several_tabs_go_on_with_their_own_drafts() {
     let Some((user, shown, browser)) = drafted() else { return };
     let first = browser.open_tab(&shown.url);
     open_editor(&browser);
-    assert_eq!(browser.run("return document.getElementById('draft-state').textContent"), "✓ saved");
+    browser.wait("document.getElementById('draft-state').textContent === '✓ saved'");
     write(&browser, "3.5");
     browser.wait("document.getElementById('draft-state').textContent.includes('not saved')");
     kill(shown);

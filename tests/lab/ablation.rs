@@ -115,11 +115,14 @@ fn too_few_samples_are_told_with_their_row() {
     };
     let wrench = refused(Method::Wrench, Samples::Drawn(4));
     assert_eq!(wrench.why, Reason::Calibration(FitError::TooFew { contacts: 4, least: 10 }));
-    assert!(wrench.to_string().starts_with("wrench, 4: it takes 10 contacts"), "{wrench}");
+    assert!(wrench.to_string().starts_with("wrench, 4: this needs at least 10 contacts"), "{wrench}");
     let network = refused(Method::Network, Samples::First(9));
     let DecoderFitError { why, .. } = &network;
     assert_eq!(*why, Reason::Network(TooFew(9)));
-    assert!(network.to_string().starts_with("network, 9 Fz: the network is adapted with 10"), "{network}");
+    assert!(
+        network.to_string().starts_with("network, 9 Fz: the network needs at least 10 contacts"),
+        "{network}"
+    );
 }
 
 fn tactpad(folder: &Path, line: &str) -> Output {

@@ -134,8 +134,7 @@ fn what_cannot_be_used_is_said() {
     assert!(adapt("--out o.onnx").contains("give it as --from scdf.onnx"));
     assert!(adapt("--from start.onnx --out m.csv").contains("m.csv is the measured table"));
     assert!(
-        adapt("--from start.onnx --out o.onnx")
-            .contains("m.csv: the network is adapted with 10 contacts at least")
+        adapt("--from start.onnx --out o.onnx").contains("m.csv: the network needs at least 10 contacts")
     );
     assert!(adapt("--from c.csv --out o.onnx").contains("decoder c.csv cannot be read: it is no ONNX model"));
     assert!(adapt("--from none.onnx --out o.onnx").contains("No such file"));

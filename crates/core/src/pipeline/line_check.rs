@@ -425,9 +425,11 @@ impl Look {
 
     /// The largest number, where the next one is zero and it is all that eight bits or more can count.
     fn wrapped(&self, reading: &Reading) -> Option<u32> {
-        let largest = self.last.sequence;
+        // An old frame may have come between them.
+        let last = self.taken?;
+        let largest = last.sequence;
         let is_full = largest >= u8::MAX.into() && largest & largest.wrapping_add(1) == 0;
-        (is_full && reading.sequence == 0 && falls(&self.last, reading)).then_some(largest)
+        (is_full && reading.sequence == 0 && falls(&last, reading)).then_some(largest)
     }
 
     /// The most that was shown within two neighbouring parts, which a burst may lie in, µs.
@@ -575,6 +577,19 @@ mod tests {
         // The first look ends with the 901st sample.
         let short = |sample: Sample, number| Sample { sequence: (number + 123) & 1_023, ..sample };
         assert_eq!(found(902, 1, short), Some(LineFinding::SequenceWraps { largest: 1_023 }));
+    }
+
+    #[test]
+    fn an_old_frame_hides_no_number_that_begins_again() {
+        let mut check = LineCheck::new();
+        let mut hear = |ms: u32, sample: Sample, delay_us| {
+            let now = HostInstant::default().plus_us(1_000 * u64::from(ms));
+            check.sample(now, &sample.into(), Arrival { lost: 0, breaks: false, delay_us });
+        };
+        (100..256).for_each(|number| hear(number, sound(number), Some(0)));
+        hear(256, sound(3), None);
+        hear(256, Sample { sequence: 0, ..sound(256) }, None);
+        assert_eq!(check.finding(), Some(&LineFinding::SequenceWraps { largest: 255 }));
     }
 
     #[test]

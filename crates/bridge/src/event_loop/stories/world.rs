@@ -187,10 +187,11 @@ impl World {
         Ok(())
     }
 
-    /// Whether nothing goes on that time would change: the pad lies there, sound and untouched.
+    /// Whether nothing goes on that time would change: the pad lies there, sound and untouched, and its number does not begin again.
     fn is_quiet(&self) -> bool {
         let pipeline = &self.play.bridge.driver.pipeline;
         self.is_plugged
+            && self.sequence_bits == 32
             && self.judge.causes.are_away_for(self.play.now, DENSE_US)
             && self.read_at.is_empty()
             && pipeline.line_finding().is_none()

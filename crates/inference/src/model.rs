@@ -58,6 +58,10 @@ pub trait Model<L>: Sync {
     }
     /// The readings, and their derivatives by all coordinates.
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised;
+    /// The same, by the coordinates of those hypotheses alone: others may be left out, as columns in which nothing changes.
+    fn linearised_by_applied(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
+        self.linearised(applied)
+    }
     /// What is known of its own errors, when hypotheses hold with these coordinates. Their number and deviations are always the same.
     fn common_errors(&self, applied: &[(usize, Vec<f64>)]) -> Vec<CommonError>;
     /// A channel's further errors, row by row: independent columns of deviation 1 each, which no other channel shares.

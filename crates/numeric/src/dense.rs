@@ -5,7 +5,7 @@ use super::products::{AT_ONCE, dot, products};
 use super::simd::widest;
 
 /// A matrix, row by row.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Matrix {
     columns: usize,
     values: Vec<f64>,

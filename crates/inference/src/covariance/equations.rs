@@ -15,6 +15,7 @@ use tactpad_numeric::linear::LargeFactor;
 use tactpad_numeric::products::dot;
 
 /// Products of a channel's columns.
+#[derive(Default)]
 pub struct NormalEquations {
     /// The columns that this channel knows, by their number among all.
     pub columns: Vec<usize>,
@@ -116,6 +117,17 @@ impl NormalEquations {
             }
         }
         let factor = factorised(&inner, Stage::Background)?;
+        let log_determinant = self.log_determinant
+            + factor.log_determinant()
+            + shares
+                .iter()
+                .map(|share| prior.log_determinant() + 2.0 * width as f64 * share.ln())
+                .sum::<f64>();
+        Ok(self.reduced_by(factor, log_determinant))
+    }
+
+    /// The same with H known, and ln det V.
+    pub fn reduced_by(&self, factor: LargeFactor, log_determinant: f64) -> Reduced {
         let whitened_mixed: Vec<Vec<f64>> =
             (0..self.columns.len()).map(|at| factor.solve_lower(self.mixed.row(at))).collect();
         let whitened_residual = factor.solve_lower(&self.background_residual);
@@ -128,19 +140,14 @@ impl NormalEquations {
             }
         }
         let score = self.signature_residual.iter().zip(&whitened_mixed);
-        Ok(Reduced {
+        Reduced {
             fisher,
             score: score.map(|(own, mixed)| own - dot(mixed, &whitened_residual)).collect(),
             square: self.square - dot(&whitened_residual, &whitened_residual),
-            log_determinant: self.log_determinant
-                + factor.log_determinant()
-                + shares
-                    .iter()
-                    .map(|share| prior.log_determinant() + 2.0 * width as f64 * share.ln())
-                    .sum::<f64>(),
+            log_determinant,
             whitened_mixed,
             factor,
-        })
+        }
     }
 
     /// Bᵀ D⁻¹ (r − A ψ), where ψ are the coordinates of the channel's own columns.

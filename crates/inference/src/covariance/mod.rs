@@ -32,6 +32,8 @@ const POOLED_FREEDOM: f64 = 6.0;
 /// Steps of the search for the background's sizes: at each length, and from sizes that are nearly right.
 const STEPS: usize = 5;
 const STEPS_AGAIN: usize = 6;
+/// A step that raises the likelihood's logarithm by less ends it.
+const LIKELIER: f64 = 0.05;
 /// Lengths from which the search goes on, by their number.
 const LENGTHS_FIRST: [usize; 3] = [2, 5, 8];
 
@@ -216,11 +218,10 @@ impl Systems {
                 let values = it[channel].as_deref()?;
                 Some((self.columns + at, values))
             });
-            system.beside(columns, &own.collect::<Vec<_>>()).map_err(|error| error.in_channel(channel))
+            system.beside(columns, &own.collect::<Vec<_>>())
         };
-        let all: Vec<_> = self.channels.par_iter().enumerate().map(of_channel).collect();
-        let all: Result<Vec<NormalEquations>, InferenceError> = all.into_iter().collect();
-        self.marginal_of(&all?.iter().collect::<Vec<_>>(), self.columns + further.len(), background)
+        let all: Vec<NormalEquations> = self.channels.par_iter().enumerate().map(of_channel).collect();
+        self.marginal_of(&all.iter().collect::<Vec<_>>(), self.columns + further.len(), background)
     }
 
     fn picked(&self, columns: &[usize]) -> Vec<NormalEquations> {
@@ -234,27 +235,31 @@ impl Systems {
         count: usize,
         background: &Background,
     ) -> Result<Marginal, InferenceError> {
-        let mut fisher = Matrix::zeros(count, count);
-        let mut score = vec![0.0; count];
-        let (mut square, mut log_determinant) = (0.0, 0.0);
         let of_channel = |(channel, (it, shares)): (usize, (&&NormalEquations, &[f64; 3]))| {
             it.reduced(&background.prior, shares).map_err(|error| error.in_channel(channel))
         };
         let channels: Vec<_> =
             equations.par_iter().zip(&background.shares).enumerate().map(of_channel).collect();
         let channels = channels.into_iter().collect::<Result<Vec<Reduced>, InferenceError>>()?;
-        for (NormalEquations { columns, .. }, reduced) in equations.iter().zip(&channels) {
-            for (row, number) in columns.iter().enumerate() {
-                score[*number] += reduced.score[row];
-                let line = fisher.row_mut(*number);
-                for (column, other) in columns.iter().enumerate() {
-                    line[*other] += reduced.fisher.at(row, column);
-                }
-            }
-            square += reduced.square;
-            log_determinant += reduced.log_determinant;
-        }
-        Ok(Marginal { fisher, score, square, log_determinant, channels })
+        Ok(Marginal::of(equations.iter().map(|it| it.columns.as_slice()).zip(channels), count))
+    }
+
+    /// The same covariance about another point: each channel's `residual`, and `columns` with their numbers.
+    pub fn about(
+        &self,
+        marginal: &Marginal,
+        columns: &[(usize, Column<'_>)],
+        residual: &[Vec<f64>],
+    ) -> Marginal {
+        let of_channel = |(channel, (system, held)): (usize, (&ChannelSystem, &Reduced))| {
+            let own = columns.iter().filter_map(|(number, it)| Some((*number, it[channel].as_deref()?)));
+            let equations = system.about(&own.collect::<Vec<_>>(), &residual[channel]);
+            let reduced = equations.reduced_by(held.factor.clone(), held.log_determinant);
+            (equations.columns, reduced)
+        };
+        let channels: Vec<(Vec<usize>, Reduced)> =
+            self.channels.par_iter().zip(&marginal.channels).enumerate().map(of_channel).collect();
+        Marginal::of(channels, self.columns)
     }
 
     /// Coordinates of all columns, fitted at once with wide priors: beside them nothing is left that any cause explains.
@@ -349,7 +354,13 @@ impl Systems {
         for _ in 0..steps {
             let marginal = self.marginal_of(&equations, self.columns, &background)?;
             let solution = fitted.solved(&marginal)?;
-            likelihood = -0.5 * (marginal.square - solution.removed + marginal.log_determinant);
+            let before = std::mem::replace(
+                &mut likelihood,
+                -0.5 * (marginal.square - solution.removed + marginal.log_determinant),
+            );
+            if likelihood - before < LIKELIER {
+                break;
+            }
             background = self.updated(&background, &equations, &marginal, &solution.coordinates);
         }
         Ok((likelihood, background))
@@ -429,6 +440,31 @@ pub struct Solved {
 }
 
 impl Marginal {
+    /// The sum of the channels, each with the numbers of its columns among so many.
+    fn of(channels: impl IntoIterator<Item = (impl AsRef<[usize]>, Reduced)>, count: usize) -> Self {
+        let mut all = Self {
+            fisher: Matrix::zeros(count, count),
+            score: vec![0.0; count],
+            square: 0.0,
+            log_determinant: 0.0,
+            channels: Vec::new(),
+        };
+        for (columns, reduced) in channels {
+            let columns = columns.as_ref();
+            for (row, number) in columns.iter().enumerate() {
+                all.score[*number] += reduced.score[row];
+                let line = all.fisher.row_mut(*number);
+                for (column, other) in columns.iter().enumerate() {
+                    line[*other] += reduced.fisher.at(row, column);
+                }
+            }
+            all.square += reduced.square;
+            all.log_determinant += reduced.log_determinant;
+            all.channels.push(reduced);
+        }
+        all
+    }
+
     /// ln det V.
     pub const fn log_determinant(&self) -> f64 {
         self.log_determinant

@@ -50,17 +50,22 @@ impl StatedErrors {
         let mut inner = products(&columns);
         (0..columns.len()).for_each(|at| inner.row_mut(at)[at] += 1.0);
         let factor = if columns.is_empty() { None } else { Some(factorised(&inner, Stage::StatedErrors)?) };
-        let against = |of: &[f64]| -> Vec<f64> {
-            let right: Vec<f64> = columns.iter().map(|column| dot(column, of)).collect();
-            factor.as_ref().map_or_else(Vec::new, |factor| factor.solve_lower(&right))
-        };
-        Ok(Self {
-            signatures: signatures.iter().map(|column| against(column)).collect(),
-            background: background.iter().map(|column| against(column)).collect(),
-            residual: against(residual),
-            factor,
-            columns,
-        })
+        let mut own =
+            Self { columns, factor, signatures: Vec::new(), background: Vec::new(), residual: Vec::new() };
+        own.signatures = own.products(signatures);
+        own.background = own.products(background);
+        own.residual = own.product(residual);
+        Ok(own)
+    }
+
+    /// v_E.
+    fn product(&self, of: &[f64]) -> Vec<f64> {
+        let Some(factor) = &self.factor else { return Vec::new() };
+        factor.solve_lower(&self.columns.iter().map(|column| dot(column, of)).collect::<Vec<f64>>())
+    }
+
+    fn products(&self, of: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        of.iter().map(|column| self.product(column)).collect()
     }
 
     /// ê = (1 + Eᵀ D⁻¹ E)⁻¹ Eᵀ D⁻¹ (v − B z), where `own` is v_E.
@@ -98,47 +103,57 @@ impl ChannelSystem {
         let background: Vec<Vec<f64>> = whitened(background);
         let residual = whitening.whitened(residual);
         let stated = StatedErrors::of(whitened(errors), &signatures, &background, &residual)?;
-        let against = |of: &[Vec<f64>], own: &[Vec<f64>]| {
-            let of = of.iter().zip(own);
-            of.map(|(column, own)| dot(column, &residual) - dot(own, &stated.residual)).collect()
-        };
-        let mixed = |(column, own): (&Vec<f64>, &Vec<f64>)| {
-            let others = background.iter().zip(&stated.background);
-            others.map(|(other, theirs)| dot(column, other) - dot(own, theirs)).collect()
-        };
-        let rows: Vec<Vec<f64>> = signatures.iter().zip(&stated.signatures).map(mixed).collect();
         let equations = NormalEquations {
             background_gram: less(products(&background), &products(&stated.background)),
-            mixed: Matrix::from_rows(&rows),
-            signature_gram: less(products(&signatures), &products(&stated.signatures)),
-            background_residual: against(&background, &stated.background),
-            signature_residual: against(&signatures, &stated.signatures),
-            square: dot(&residual, &residual) - dot(&stated.residual, &stated.residual),
             log_determinant: whitening.log_determinant()
                 + stated.factor.as_ref().map_or(0.0, LargeFactor::log_determinant),
             columns,
+            ..NormalEquations::default()
         };
-        Ok(Self { equations, whitening, signatures, background, residual, stated })
+        let mut system = Self { equations, whitening, signatures, background, residual, stated };
+        let columns = system.equations.columns.clone();
+        system.equations = system.with(columns, &system.signatures, &system.residual);
+        Ok(system)
     }
 
     /// The normal equations of some of its columns, and of `further` ones with their numbers.
-    ///
-    /// # Errors
-    /// As [`Self::of`].
-    pub fn beside(
-        &self,
-        columns: &[usize],
-        further: &[(usize, &[f64])],
-    ) -> Result<NormalEquations, InferenceError> {
-        let further: Vec<(usize, Vec<f64>)> =
-            further.iter().map(|(number, values)| (*number, self.whitening.whitened(values))).collect();
-        let own = self.equations.columns.iter().zip(&self.signatures);
+    pub fn beside(&self, columns: &[usize], further: &[(usize, &[f64])]) -> NormalEquations {
+        let own = self.equations.columns.iter().copied().zip(self.signatures.iter().cloned());
         let own = own.filter(|(number, _)| columns.contains(number));
-        let further = further.iter().map(|(number, values)| (*number, values.as_slice()));
-        let all: Vec<(usize, &[f64])> =
-            own.map(|(number, values)| (*number, values.as_slice())).chain(further).collect();
-        let white = Whitening::none(self.residual.len());
-        Ok(Self::of(&all, &self.background, &self.stated.columns, &self.residual, white)?.equations)
+        let further = further.iter().map(|(number, values)| (*number, self.whitening.whitened(values)));
+        let (numbers, signatures): (Vec<usize>, Vec<Vec<f64>>) = own.chain(further).unzip();
+        self.with(numbers, &signatures, &self.residual)
+    }
+
+    /// Those of the same rows about another point, where the channel has this residual and these columns.
+    pub fn about(&self, columns: &[(usize, &[f64])], residual: &[f64]) -> NormalEquations {
+        let whitened = columns.iter().map(|(number, values)| (*number, self.whitening.whitened(values)));
+        let (numbers, signatures): (Vec<usize>, Vec<Vec<f64>>) = whitened.unzip();
+        self.with(numbers, &signatures, &self.whitening.whitened(residual))
+    }
+
+    /// Those of whitened columns and a whitened residual, beside the background.
+    fn with(&self, columns: Vec<usize>, signatures: &[Vec<f64>], residual: &[f64]) -> NormalEquations {
+        let (stated, stated_residual) = (self.stated.products(signatures), self.stated.product(residual));
+        let against = |all: &[Vec<f64>], stated: &[Vec<f64>]| {
+            let all = all.iter().zip(stated);
+            all.map(|(column, own)| dot(column, residual) - dot(own, &stated_residual)).collect()
+        };
+        let mixed = |(column, own): (&Vec<f64>, &Vec<f64>)| {
+            let others = self.background.iter().zip(&self.stated.background);
+            others.map(|(other, theirs)| dot(column, other) - dot(own, theirs)).collect()
+        };
+        let rows: Vec<Vec<f64>> = signatures.iter().zip(&stated).map(mixed).collect();
+        NormalEquations {
+            background_gram: self.equations.background_gram.clone(),
+            mixed: Matrix::from_rows(&rows),
+            signature_gram: less(products(signatures), &products(&stated)),
+            background_residual: against(&self.background, &self.stated.background),
+            signature_residual: against(signatures, &stated),
+            square: dot(residual, residual) - dot(&stated_residual, &stated_residual),
+            log_determinant: self.equations.log_determinant,
+            columns,
+        }
     }
 
     /// D⁻½ (r − A ψ − B z − E ê).

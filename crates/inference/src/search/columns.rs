@@ -59,8 +59,12 @@ impl Columns {
     ) -> Vec<Column<'c>> {
         let own = linearised.signatures.iter().zip(&self.of_hypothesis);
         let of_hypotheses = own.filter(|(_, columns)| columns[0] >= self.channels).flat_map(|(all, _)| all);
-        let errors = errors.iter().map(|error| &error.signature);
-        self.zeros.iter().chain(errors).chain(of_hypotheses).map(Vec::as_slice).collect()
+        self.nuisance_signatures(errors).chain(of_hypotheses.map(Vec::as_slice)).collect()
+    }
+
+    /// Those of the zeros and of the model's own errors.
+    pub fn nuisance_signatures<'c>(&'c self, errors: &'c [CommonError]) -> impl Iterator<Item = Column<'c>> {
+        self.zeros.iter().chain(errors.iter().map(|error| &error.signature)).map(Vec::as_slice)
     }
 
     /// Adds the pull of the priors where courses are other than expected: −P ψ.
@@ -72,6 +76,21 @@ impl Columns {
                 marginal.score[*column] -= self.precisions[*column] * psi;
             }
         }
+    }
+
+    /// The nuisances, free.
+    pub fn nuisances(&self) -> Fitted<'_> {
+        self.fitted([])
+    }
+
+    /// Σ P ψ² of the courses.
+    pub fn prior_square(&self, applied: &[(usize, Vec<f64>)]) -> f64 {
+        let of = |(at, coordinates): &(usize, Vec<f64>)| -> f64 {
+            let shapes = &self.shapes[*at];
+            let own = &coordinates[coordinates.len() - shapes.len()..];
+            shapes.iter().zip(own).map(|(column, psi)| self.precisions[*column] * psi * psi).sum()
+        };
+        applied.iter().map(of).sum()
     }
 
     /// All columns of a hypothesis, in the order of its numbers.

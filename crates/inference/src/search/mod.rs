@@ -4,6 +4,7 @@ mod bootstrap;
 pub mod columns;
 mod constancy;
 pub mod estimates;
+mod fitting;
 mod random_effects;
 mod rivals;
 pub mod score_test;
@@ -15,11 +16,12 @@ use rayon::prelude::*;
 
 use self::bootstrap::{Bootstrap, Draw};
 use self::columns::Columns;
+pub use self::fitting::AttributionFit;
 use self::score_test::{Projected, Test};
-use crate::covariance::{Background, Fitted, Marginal, Smooth, Systems};
+use crate::covariance::{Fitted, Smooth};
 use crate::error::{InferenceError, Stage, factorised};
 use crate::hypothesis::Parameter;
-use crate::model::{Linearised, Model};
+use crate::model::Model;
 use crate::observations::Observations;
 use crate::policy::{LEVEL, SIGNATURE_ERROR};
 use tactpad_numeric::dense::Matrix;
@@ -34,47 +36,11 @@ const TAKEN: f64 = 5.0;
 const SHORTLIST: usize = 6;
 /// No more causes than this are looked for.
 const CAUSES_MAX: usize = 12;
-/// Gauss-Newton steps of a refit.
-const REFITS: usize = 12;
-/// A refit that moves no number that is asked for by more than this many standard deviations stands.
-const STANDS: f64 = 0.1;
-
 /// Hypotheses that hold, each with its coordinates.
 pub type Applied = Vec<(usize, Vec<f64>)>;
 
 /// What each specimen has of its own: hypotheses whose numbers are normal, effect by effect.
 pub type RandomEffects = Vec<Vec<usize>>;
-
-/// The measurement about a fitted point.
-pub struct AttributionFit {
-    /// Applied hypotheses, with the fitted coordinates.
-    pub applied: Applied,
-    /// By how many standard deviations one more step would move a number that is asked for at most.
-    pub unsettled: f64,
-    /// The channels' systems about the point.
-    pub systems: Systems,
-    /// Sizes of the smooth background.
-    pub background: Background,
-    /// The systems with that background.
-    pub marginal: Marginal,
-    /// The model about the point.
-    pub linearised: Linearised,
-    /// Coordinates of all columns beside the point: the nuisances, and what a last step would change.
-    pub coordinates: Vec<f64>,
-}
-
-impl AttributionFit {
-    /// Whether it stands; else it ran out of steps on the way.
-    pub fn is_settled(&self) -> bool {
-        self.unsettled < STANDS
-    }
-}
-
-/// A Gauss-Newton step in all columns, and how much of it is taken.
-struct GaussNewtonStep {
-    coordinates: Vec<f64>,
-    fraction: f64,
-}
 
 /// Result of the search for causes.
 pub struct Attribution {
@@ -112,29 +78,46 @@ impl<'m, L> Search<'m, L> {
     /// Forward selection from causes that are held to be there: whatever is not significant is taken out, but for `random_effects`, which
     /// are asked for together; while the best candidate is significant, it is fitted.
     pub fn run(&self, start: &Applied, random_effects: &[Vec<usize>]) -> Result<Attribution, InferenceError> {
-        let mut fit = self.fitted(start, None)?;
+        let mut fit = self.nearly_fitted(start, None)?;
         let mut critical = self.critical(&fit)?;
-        while let Some(least) = self.superfluous(&fit, critical, random_effects)? {
-            let mut applied = fit.applied.clone();
-            applied.remove(least);
-            fit = self.fitted(&applied, Some(&fit))?;
-        }
+        fit = self.without_superfluous(fit, critical, random_effects, &mut Vec::new())?;
         // What was taken out or replaced stays out, so that the search ends.
         let mut barred: Vec<usize> = Vec::new();
         while fit.applied.len() < CAUSES_MAX + random_effects.iter().flatten().count() {
             let Some(next) = self.next(&fit, critical, &barred, random_effects)? else { break };
             let mut applied = fit.applied.clone();
             applied.push((next, vec![0.0; self.model.hypotheses()[next].parameters.len()]));
-            fit = self.within_range(self.fitted(&applied, Some(&fit))?, critical, &mut barred)?;
+            fit = self.within_range(self.nearly_fitted(&applied, Some(&fit))?, critical, &mut barred)?;
             critical = self.critical(&fit)?;
-            while let Some(least) = self.superfluous(&fit, critical, random_effects)? {
-                let mut applied = fit.applied.clone();
-                barred.push(applied.remove(least).0);
-                fit = self.fitted(&applied, Some(&fit))?;
+            fit = self.without_superfluous(fit, critical, random_effects, &mut barred)?;
+        }
+        while !fit.is_settled() {
+            let causes = fit.applied.len();
+            fit = self.fitted(&fit.applied, Some(&fit))?;
+            critical = self.critical(&fit)?;
+            fit = self.without_superfluous(fit, critical, random_effects, &mut barred)?;
+            if fit.applied.len() == causes {
+                break;
             }
         }
         let reproduced = self.reproduced(&fit, random_effects)?;
         Ok(Attribution { fit, critical, random_effects: random_effects.to_vec(), reproduced })
+    }
+
+    /// The fit without what is not significant, one after the other; what went is `barred`.
+    fn without_superfluous(
+        &self,
+        mut fit: AttributionFit,
+        critical: f64,
+        random_effects: &[Vec<usize>],
+        barred: &mut Vec<usize>,
+    ) -> Result<AttributionFit, InferenceError> {
+        while let Some(least) = self.superfluous(&fit, critical, random_effects)? {
+            let mut applied = fit.applied.clone();
+            barred.push(applied.remove(least).0);
+            fit = self.nearly_fitted(&applied, Some(&fit))?;
+        }
+        Ok(fit)
     }
 
     /// The fit, or where its last cause ended at an end of its range, that with a rival in its place which explains the data as well
@@ -155,7 +138,7 @@ impl<'m, L> Search<'m, L> {
         for rival in rivals {
             let mut applied = fit.applied.clone();
             applied[last] = (rival, vec![0.0; self.model.hypotheses()[rival].parameters.len()]);
-            let other = self.fitted(&applied, Some(&fit))?;
+            let other = self.nearly_fitted(&applied, Some(&fit))?;
             if !self.is_at_an_end(&other, last) {
                 barred.push(fit.applied[last].0);
                 return Ok(other);
@@ -167,100 +150,6 @@ impl<'m, L> Search<'m, L> {
     /// Whether a hypothesis is a channel's zero.
     pub(crate) fn is_zero(&self, hypothesis: usize) -> bool {
         self.model.hypotheses()[hypothesis].zero_of.is_some()
-    }
-
-    /// The fit of these hypotheses by Gauss and Newton's method, with the covariance that goes with it. With `start`, a fit of nearly the
-    /// same ones, that is not sought from the beginning.
-    pub fn fitted(
-        &self,
-        applied: &Applied,
-        start: Option<&AttributionFit>,
-    ) -> Result<AttributionFit, InferenceError> {
-        let mut applied = applied.clone();
-        let mut before: Option<(Systems, Background)> = None;
-        let mut last: Option<GaussNewtonStep> = None;
-        let mut steps = 0;
-        loop {
-            let linearised = self.model.linearised(&applied);
-            let errors = self.model.common_errors(&applied);
-            let systems = Systems::of(
-                self.observations,
-                &self.smooth,
-                self.model,
-                &linearised,
-                &self.columns.signatures(&linearised, &errors),
-                before.as_ref().map(|(systems, _)| systems).or(start.map(|fit| &fit.systems)),
-            )?;
-            let fitted = self.columns.fitted(applied.iter().map(|(at, _)| *at));
-            let found = match &before {
-                Some((_, background)) => systems.resized(&fitted, background)?,
-                None => systems.background(&fitted, start.map(|fit| &fit.background))?,
-            };
-            let mut marginal = systems.marginal(&found)?;
-            self.columns.pull(&mut marginal, &applied);
-            let solved = fitted.solved(&marginal)?;
-            let unsettled = self.unsettled(&applied, &solved.coordinates, &marginal);
-            if steps == REFITS || unsettled < STANDS {
-                return Ok(AttributionFit {
-                    unsettled,
-                    applied,
-                    systems,
-                    background: found,
-                    marginal,
-                    linearised,
-                    coordinates: solved.coordinates,
-                });
-            }
-            let next = self.next_step(&applied, solved.coordinates, &marginal, last.as_ref());
-            self.step(&mut applied, &next);
-            (before, last) = (Some((systems, found)), Some(next));
-            steps += 1;
-        }
-    }
-
-    /// By how many standard deviations a step moves a number that is asked for at most, as far as its range lets it.
-    fn unsettled(&self, applied: &Applied, step: &[f64], marginal: &Marginal) -> f64 {
-        let moved = |(at, coordinates): &(usize, Vec<f64>)| {
-            let columns =
-                self.columns.of_hypothesis[*at].iter().zip(&self.model.hypotheses()[*at].parameters);
-            let moved = columns.zip(coordinates).map(|((column, parameter), psi)| {
-                let after = parameter.coordinate(parameter.value(psi + step[*column]));
-                (after - psi).abs() * marginal.fisher.at(*column, *column).sqrt()
-            });
-            moved.fold(0.0, f64::max)
-        };
-        applied.iter().map(moved).fold(0.0, f64::max)
-    }
-
-    /// A Gauss-Newton step s after a last one s₀, and how much of it is taken: by how far it turns back, ρ = sᵀ F s₀/(s₀ᵀ F s₀), with
-    /// the Fisher information F. The shapes of a course need it: there whole steps may jump to and fro for ever.
-    fn next_step(
-        &self,
-        applied: &Applied,
-        coordinates: Vec<f64>,
-        marginal: &Marginal,
-        last: Option<&GaussNewtonStep>,
-    ) -> GaussNewtonStep {
-        let columns: Vec<usize> = applied.iter().flat_map(|(at, _)| self.columns.all_of(*at)).collect();
-        let of = |step: &[f64]| columns.iter().map(|column| step[*column]).collect::<Vec<f64>>();
-        let by_secant = |last: &GaussNewtonStep| {
-            let before = of(&last.coordinates);
-            let weighted = marginal.fisher.picked(&columns, &columns).times(&before);
-            fraction(last.fraction, dot(&weighted, &of(&coordinates)) / dot(&weighted, &before))
-        };
-        GaussNewtonStep { fraction: last.map_or(1.0, by_secant), coordinates }
-    }
-
-    fn step(&self, applied: &mut Applied, GaussNewtonStep { coordinates: step, fraction }: &GaussNewtonStep) {
-        for (at, coordinates) in applied {
-            let hypothesis = &self.model.hypotheses()[*at];
-            let columns = self.columns.all_of(*at);
-            for ((coordinate, column), parameter) in
-                coordinates.iter_mut().zip(columns).zip(&hypothesis.parameters)
-            {
-                *coordinate = parameter.coordinate(parameter.value(*coordinate + fraction * step[column]));
-            }
-        }
     }
 
     /// The critical p-value where these causes hold.
@@ -543,17 +432,6 @@ impl<'m, L> Search<'m, L> {
 /// Whether a hypothesis is a random effect.
 pub fn is_random_effect(random_effects: &[Vec<usize>], hypothesis: usize) -> bool {
     random_effects.iter().flatten().any(|member| *member == hypothesis)
-}
-
-/// How much of a step is taken after one of which t₀ was taken, and of which it is ρ times: the steps vanish at the fit, and by the secant
-///
-/// ```text
-/// t = min(1, t₀/(1 − ρ))
-/// ```
-///
-/// All of it where they grow, or nothing is known of the last one.
-fn fraction(last: f64, ratio: f64) -> f64 {
-    if ratio < 1.0 { (last / (1.0 - ratio)).min(1.0) } else { 1.0 }
 }
 
 #[cfg(test)]

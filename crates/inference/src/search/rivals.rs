@@ -96,7 +96,7 @@ impl<L> Search<'_, L> {
             let mut applied = fit.applied.clone();
             applied[at] = (rival, vec![0.0; self.model.hypotheses()[rival].parameters.len()]);
             // One that cannot be fitted explains nothing.
-            let Ok(other) = self.fitted(&applied, Some(fit)) else { continue };
+            let Ok(other) = self.nearly_fitted(&applied, Some(fit)) else { continue };
             if !self.is_at_an_end(&other, at) && self.deviance(&other) < least {
                 rivals.push(rival);
             }

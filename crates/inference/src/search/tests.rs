@@ -7,29 +7,6 @@ use crate::observations::Sample;
 use tactpad_numeric::random::SplitMix64;
 use tactpad_numeric::statistics::rms;
 
-/// Where steps lead from 0, each a share of what it should be.
-fn led(step: impl Fn(f64) -> f64, taken: impl Fn(f64, f64) -> f64) -> f64 {
-    let (mut at, mut last) = (0.0, None);
-    for _ in 0..REFITS {
-        let next: f64 = step(at);
-        let part = last.map_or(1.0, |(before, part)| taken(part, next / before));
-        at += part * next;
-        last = Some((next, part));
-    }
-    at
-}
-
-#[test]
-fn steps_that_turn_back_as_far_as_they_went_lead_to_the_fit() {
-    // Twice as long as they should be a unit from the fit, which is at 1, and longer nearby: whole ones go from side to side for ever.
-    let too_long = |at: f64| 2.2 * (1.0 - at) / (1.0 + 0.1 * (1.0 - at).powi(2));
-    assert!((led(too_long, |_, _| 1.0) - 1.0).abs() > 0.3, "{}", led(too_long, |_, _| 1.0));
-    assert!((led(too_long, fraction) - 1.0).abs() < 1e-9, "{}", led(too_long, fraction));
-    // Too short: whole ones are right.
-    assert_eq!([fraction(1.0, 0.5), fraction(0.5, 1.5), fraction(1.0, f64::NAN)], [1.0; 3]);
-    assert_eq!([fraction(1.0, -1.0), fraction(0.5, -1.0)], [0.5, 0.25]);
-}
-
 /// What may be wrong with the made-up sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Cause {

@@ -465,6 +465,32 @@ impl<'s> SensorAt<'s> {
         signature.into_iter().map(|of| of.map(picked)).collect()
     }
 
+    /// With the derivatives by the coordinates of some hypotheses.
+    fn derived(
+        &self,
+        point: &Point<'_>,
+        doubts: Vec<Vec<f64>>,
+        of: impl Fn(usize) -> bool + Sync,
+    ) -> Linearised {
+        let sensor = self.sensor;
+        let signatures = sensor.hypotheses.par_iter().enumerate().map(|(at, it)| {
+            let signature = |parameter| {
+                if of(at) {
+                    self.at_rows(sensor.signature(point, at, parameter))
+                } else {
+                    vec![None; sensor.rest.len()]
+                }
+            };
+            (0..it.parameters.len()).map(signature).collect()
+        });
+        Linearised {
+            signatures: signatures.collect(),
+            loads: self.picked.iter().map(|row| sensor.samples[*row].load).collect(),
+            doubts,
+            readings: self.picked(point.readings.clone()),
+        }
+    }
+
     /// Each channel's values at these rows.
     fn picked(&self, channels: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         let picked = |of: Vec<f64>| {
@@ -492,18 +518,14 @@ impl Model<Label> for SensorAt<'_> {
     }
 
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
-        let (sensor, point) = (self.sensor, self.sensor.point(applied));
-        let hypotheses = sensor.hypotheses.par_iter().enumerate();
-        let signatures = hypotheses.map(|(at, it)| {
-            let of = |parameter| self.at_rows(sensor.signature(&point, at, parameter));
-            (0..it.parameters.len()).map(of).collect()
-        });
-        Linearised {
-            signatures: signatures.collect(),
-            loads: self.picked.iter().map(|row| sensor.samples[*row].load).collect(),
-            doubts: self.picked(sensor.doubts(&point.chain)),
-            readings: self.picked(point.readings.clone()),
-        }
+        let point = self.sensor.point(applied);
+        let doubts = self.picked(self.sensor.doubts(&point.chain));
+        self.derived(&point, doubts, |_| true)
+    }
+
+    fn linearised_by_applied(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
+        let is_applied = |at: usize| applied.iter().any(|(held, _)| *held == at);
+        self.derived(&self.sensor.point(applied), vec![Vec::new(); self.sensor.rest.len()], is_applied)
     }
 
     /// Each as large, in units of the channels' root mean squares, as the model's error.

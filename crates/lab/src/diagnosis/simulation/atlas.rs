@@ -248,6 +248,10 @@ impl Model<Label> for Atlas<'_> {
         self.about(applied).linearised(applied)
     }
 
+    fn linearised_by_applied(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
+        self.about(applied).linearised_by_applied(applied)
+    }
+
     fn common_errors(&self, applied: &[(usize, Vec<f64>)]) -> Vec<CommonError> {
         self.about(applied).common_errors(applied)
     }

@@ -312,6 +312,27 @@ impl Simulated {
         })
     }
 
+    /// With the derivatives by the coordinates of some hypotheses.
+    fn derived(
+        &self,
+        point: Point<'_>,
+        doubts: Vec<Vec<f64>>,
+        of: impl Fn(usize) -> bool + Sync,
+    ) -> Linearised {
+        let signatures = self.hypotheses.par_iter().enumerate().map(|(at, hypothesis)| {
+            let signature = |parameter| {
+                if of(at) { self.signature(&point, [at, parameter]) } else { vec![None; CHANNELS] }
+            };
+            (0..hypothesis.parameters.len()).map(signature).collect()
+        });
+        Linearised {
+            signatures: signatures.collect(),
+            loads: self.picked.iter().map(|row| point.rows[*row].force_n).collect(),
+            doubts,
+            readings: point.readings,
+        }
+    }
+
     /// ∂readings/∂ψ by one coordinate: a central difference.
     fn signature(&self, point: &Point<'_>, [at, parameter]: [usize; 2]) -> Signature {
         let hypothesis = &self.hypotheses[at];
@@ -355,16 +376,13 @@ impl Model<Label> for Simulated {
 
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
         let point = self.point(applied);
-        let signatures = self.hypotheses.par_iter().enumerate().map(|(at, hypothesis)| {
-            let of = |parameter| self.signature(&point, [at, parameter]);
-            (0..hypothesis.parameters.len()).map(of).collect()
-        });
-        Linearised {
-            signatures: signatures.collect(),
-            loads: self.picked.iter().map(|row| point.rows[*row].force_n).collect(),
-            doubts: self.doubts(&point),
-            readings: point.readings,
-        }
+        let doubts = self.doubts(&point);
+        self.derived(point, doubts, |_| true)
+    }
+
+    fn linearised_by_applied(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
+        let is_applied = |at: usize| applied.iter().any(|(held, _)| *held == at);
+        self.derived(self.point(applied), vec![Vec::new(); CHANNELS], is_applied)
     }
 
     fn common_errors(&self, applied: &[(usize, Vec<f64>)]) -> Vec<CommonError> {

@@ -38,7 +38,7 @@ enum Verb {
 }
 
 /// The whole command line; its help has the verbs in their groups.
-fn command() -> Command {
+pub(super) fn command() -> Command {
     let command = Arguments::command();
     let groups = [
         ("Playing", playing::Verb::augment_subcommands(Command::new("playing"))),

@@ -46,6 +46,7 @@ mod twin_capture;
 mod twin_verb;
 #[cfg(target_os = "linux")]
 mod undisturbed;
+mod version;
 mod vtk;
 mod weigh;
 mod written;

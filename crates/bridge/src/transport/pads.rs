@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use firmware_proto::hid::{PRODUCT_ID, VENDOR_ID};
 use hidapi::HidApi;
-use serialport::SerialPortType;
+use serialport::{SerialPortInfo, SerialPortType};
 
 use super::firmware::Firmware;
+use super::serial::ports;
 use super::usb;
 
 /// The usage page of the pad's report descriptor: vendor-defined.
@@ -95,8 +96,7 @@ pub(super) fn hid_pads(vendor: u16, product: u16) -> Vec<FoundPad> {
 
 /// Every serial port on the USB, whatever is behind it.
 pub fn usb_serial_ports() -> Vec<FoundPad> {
-    let ports = serialport::available_ports().unwrap_or_default();
-    let port = |port: serialport::SerialPortInfo| match port.port_type {
+    let port = |port: SerialPortInfo| match port.port_type {
         SerialPortType::UsbPort(usb) => Some(FoundPad {
             attachment: Attachment::Serial,
             usb_interface: usb::interface(Path::new(&port.port_name)),
@@ -107,5 +107,5 @@ pub fn usb_serial_ports() -> Vec<FoundPad> {
         }),
         _ => None,
     };
-    ports.into_iter().filter_map(port).collect()
+    ports().into_iter().filter_map(port).collect()
 }

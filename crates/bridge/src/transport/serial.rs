@@ -5,6 +5,7 @@ use std::fs::{File, OpenOptions};
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::OpenOptionsExt;
+use std::path::Path;
 
 use firmware_proto::ENCODED_MAX;
 use firmware_proto::command::Command;
@@ -12,7 +13,7 @@ use firmware_proto::link::encode_command;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fs::OFlags;
 use rustix::io::Errno;
-use serialport::{ClearBuffer, SerialPort, TTYPort};
+use serialport::{ClearBuffer, SerialPort, SerialPortInfo, TTYPort};
 
 use super::Transport;
 use super::pacing::limit;
@@ -200,10 +201,19 @@ fn is_one_of(error: &io::Error, codes: &[Errno]) -> bool {
     codes.iter().any(|code| error.raw_os_error() == Some(code.raw_os_error()))
 }
 
-/// The paths of this machine's serial ports; empty where they cannot be listed.
+/// This machine's serial ports; none where they cannot be listed.
+pub fn ports() -> Vec<SerialPortInfo> {
+    // serialport panics where the system has no such folder.
+    if Path::new("/sys/class/tty").is_dir() {
+        serialport::available_ports().unwrap_or_default()
+    } else {
+        Vec::new()
+    }
+}
+
+/// Their paths.
 fn present() -> Vec<String> {
-    let ports = serialport::available_ports().unwrap_or_default();
-    ports.into_iter().map(|port| port.port_name).collect()
+    ports().into_iter().map(|port| port.port_name).collect()
 }
 
 impl fmt::Display for SerialOpenError {

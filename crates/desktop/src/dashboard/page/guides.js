@@ -1,10 +1,10 @@
 // The view "Guides": step by step, as the program tells them. It knows no guide by itself.
 
-import { announce } from "./announce.js";
-import { get, post, withToken } from "./api.js";
-import { commandLine } from "./command.js";
-import { button, el, number, row, say, scroller, table } from "./dom.js";
-import { NumberField } from "./number_field.js";
+import { announce } from "./shared/announce.js";
+import { get, post, withToken } from "./link/api.js";
+import { commandLine } from "./shared/command.js";
+import { button, el, number, row, say, scroller, table } from "./shared/dom.js";
+import { NumberField } from "./fields/number_field.js";
 
 const STEPS = {
   todo: { sign: "○", word: "to do" },

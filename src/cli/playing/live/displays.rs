@@ -7,6 +7,7 @@ use clap::Args;
 #[cfg(feature = "dashboard")]
 use super::page::Page;
 use super::profile_selection::ProfileSelection;
+use super::runtime::BridgeName;
 #[cfg(feature = "tray")]
 use super::tray_profiles::TrayProfiles;
 use crate::cli::failure::Failure;
@@ -60,10 +61,11 @@ impl DisplayOptions {
         false
     }
 
-    /// Opens the displays of the bridge that `requests` reach. `memory` is the state file of the page's addresses.
+    /// Opens the displays of the bridge that `requests` reach, by the name `reached` if it has one. `memory` is the state file of the page's addresses.
     pub(super) fn prepare(
         self,
         memory: &str,
+        reached: Option<&BridgeName>,
         requests: &Requests,
         selection: &Arc<Mutex<ProfileSelection>>,
         output: OutputChoice,
@@ -71,7 +73,13 @@ impl DisplayOptions {
         let prepared = OpenedDisplays::default();
         #[cfg(feature = "dashboard")]
         let prepared = match self.dashboard {
-            true => prepared.with_page(memory, requests.sender()?, Arc::clone(selection), output)?,
+            true => prepared.with_page(
+                memory,
+                reached.cloned(),
+                requests.sender()?,
+                Arc::clone(selection),
+                output,
+            )?,
             false => prepared,
         };
         #[cfg(feature = "tray")]
@@ -79,7 +87,7 @@ impl DisplayOptions {
             true => prepared.with_icon(requests.sender()?, Arc::clone(selection)),
             false => prepared,
         };
-        let _ = (memory, requests, selection, output);
+        let _ = (memory, reached, requests, selection, output);
         Ok(prepared)
     }
 }
@@ -89,11 +97,12 @@ impl OpenedDisplays {
     fn with_page(
         self,
         memory: &str,
+        reached: Option<BridgeName>,
         sender: RequestSender,
         selection: Arc<Mutex<ProfileSelection>>,
         output: OutputChoice,
     ) -> Result<Self, Failure> {
-        let (page, observer) = Page::open(memory, sender, selection, output)?;
+        let (page, observer) = Page::open(memory, reached, sender, selection, output)?;
         let (observer, url, timing) = (Some(observer), Some(page.url()), Some(Timing::default()));
         Ok(Self { page: Some(page), observer, url, timing, ..self })
     }

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde_json::Value;
 
 use super::profile_selection::ProfileSelection;
+use super::runtime::BridgeName;
 use super::{calibrated, doctor, page_memory, reported};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
@@ -36,6 +37,7 @@ impl Page {
     /// state file of addresses.
     pub(super) fn open(
         memory: &str,
+        reached: Option<BridgeName>,
         sender: RequestSender,
         selection: Arc<Mutex<ProfileSelection>>,
         output: OutputChoice,
@@ -50,7 +52,7 @@ impl Page {
         if let Err(failure) = page_memory::keep(memory, dashboard.address(), &earlier) {
             say(failure.sentence());
         }
-        Ok((Self { dashboard, sender, shelf: Arc::new(Shelf { selection, output }) }, observer))
+        Ok((Self { dashboard, sender, shelf: Arc::new(Shelf { reached, selection, output }) }, observer))
     }
 
     /// Where it is.
@@ -66,6 +68,8 @@ impl Page {
 
 /// Profiles, the doctor and reports.
 struct Shelf {
+    /// The name by which `tactpad ctl` reaches the bridge.
+    reached: Option<BridgeName>,
     selection: Arc<Mutex<ProfileSelection>>,
     output: OutputChoice,
 }
@@ -124,7 +128,7 @@ impl DashboardHost for Shelf {
     }
 
     fn doctor(&self) -> Value {
-        serde_json::to_value(doctor::examine()).unwrap_or_default()
+        serde_json::to_value(doctor::examine(self.reached.as_ref())).unwrap_or_default()
     }
 
     fn reports(&self) -> Vec<ReportEntry> {

@@ -70,6 +70,7 @@ const FILES: &[(&str, &str)] = &files![
     "shared/router.js",
     "shared/screen.js",
     "shared/settings.js",
+    "shared/tones.js",
     "shared/words.js",
     "style.css",
 ];

@@ -106,6 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         &requests,
         &host.selection(),
         output.choice(),
+        (&PadAddress::Virtual, &arguments.device),
     )?;
     if let Some(url) = &prepared.url {
         if_read(tell(arguments, &format!("Dashboard: {url}")))?;

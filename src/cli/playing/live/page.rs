@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::Value;
 
+use super::practising::Practising;
 use super::profile_selection::ProfileSelection;
 use super::runtime::BridgeName;
 use super::{calibrated, doctor, page_memory, reported};
@@ -19,6 +20,7 @@ use tactpad::dashboard::host::{
     DashboardHost, KeptDecoder, Overwrite, ProfileEntry, ReportEntry, SaveError, SavedProfile, SessionStore,
     StoredProfile,
 };
+use tactpad::dashboard::practice::Wish;
 use tactpad::dashboard::server::Dashboard;
 use tactpad::lab::play::guide::Guide;
 use tactpad::pipeline::capture::head::Head;
@@ -37,10 +39,8 @@ impl Page {
     /// state file of addresses.
     pub(super) fn open(
         memory: &str,
-        reached: Option<BridgeName>,
         sender: RequestSender,
-        selection: Arc<Mutex<ProfileSelection>>,
-        output: OutputChoice,
+        shelf: Shelf,
     ) -> Result<(Self, Observer), Failure> {
         let earlier = page_memory::addresses(memory);
         let (dashboard, observer) = Dashboard::open(&earlier, page_memory::key()?).map_err(|error| {
@@ -52,7 +52,7 @@ impl Page {
         if let Err(failure) = page_memory::keep(memory, dashboard.address(), &earlier) {
             say(failure.sentence());
         }
-        Ok((Self { dashboard, sender, shelf: Arc::new(Shelf { reached, selection, output }) }, observer))
+        Ok((Self { dashboard, sender, shelf: Arc::new(shelf) }, observer))
     }
 
     /// Where it is.
@@ -67,14 +67,34 @@ impl Page {
 }
 
 /// Profiles, the doctor and reports.
-struct Shelf {
+pub(super) struct Shelf {
     /// The name by which `tactpad ctl` reaches the bridge.
     reached: Option<BridgeName>,
     selection: Arc<Mutex<ProfileSelection>>,
     output: OutputChoice,
+    /// The practice hand, if one plays.
+    hand: Mutex<Option<Practising>>,
+}
+
+impl Shelf {
+    /// Of the bridge that `tactpad ctl` reaches by this name, if it has one.
+    pub(super) const fn new(
+        reached: Option<BridgeName>,
+        selection: Arc<Mutex<ProfileSelection>>,
+        output: OutputChoice,
+        hand: Option<Practising>,
+    ) -> Self {
+        Self { reached, selection, output, hand: Mutex::new(hand) }
+    }
 }
 
 impl DashboardHost for Shelf {
+    fn practise(&self, wish: Wish) {
+        if let Some(hand) = &mut *self.hand.lock().unwrap_or_else(PoisonError::into_inner) {
+            hand.obey(wish);
+        }
+    }
+
     fn entries(&self) -> Vec<ProfileEntry> {
         profile::entries()
     }

@@ -115,8 +115,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         audience.tell(leave);
     }
     let memory = runtime::page_memory(reached.as_ref().or(arguments.name.as_ref()));
-    let mut prepared =
-        arguments.shown.prepare(&memory, reached.as_ref(), &requests, &selection, output.choice())?;
+    let mut prepared = arguments.shown.prepare(
+        &memory,
+        reached.as_ref(),
+        &requests,
+        &selection,
+        output.choice(),
+        (pad, &arguments.device),
+    )?;
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));
     }

@@ -48,7 +48,10 @@ function followFrames(views) {
 }
 
 function followStatus(views) {
-  live.on("sketch", (message) => views.live.setSketch(message));
+  live.on("sketch", (message) => {
+    views.live.setSketch(message);
+    views.guides.setSketch(message);
+  });
   live.on("guide", ({ guide }) => views.guides.update(guide));
   live.on("status", (message) => {
     views.live.setStatus(message);

@@ -1,11 +1,11 @@
 // What a person chose for this page: colours, motion, announcements. Kept in the browser.
 
 const KEY = "tactpad-display";
-const DEFAULTS = { theme: "auto", motion: "auto", announce: true, codes: false, measurements: false };
+const DEFAULTS = { theme: "auto", motion: "auto", announce: true, codes: false, tones: false, measurements: false };
 const less = matchMedia("(prefers-reduced-motion: reduce)");
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
-/** @type {{ theme: string, motion: string, announce: boolean, codes: boolean, measurements: boolean }} */
+/** @type {{ theme: string, motion: string, announce: boolean, codes: boolean, tones: boolean, measurements: boolean }} */
 let chosen = { ...DEFAULTS };
 const themeListeners = [];
 
@@ -36,6 +36,9 @@ export const calm = () => (chosen.motion === "auto" ? less.matches : chosen.moti
 /** Whether presses are spoken. */
 export const announces = () => chosen.announce;
 
+/** Whether cues are told by a tone, too. */
+export const sounds = () => chosen.tones;
+
 /** A fold is found as it was left. @param {HTMLDetailsElement} details @param {"measurements"} name */
 export function rememberFold(details, name) {
   details.open = chosen[name];
@@ -60,6 +63,9 @@ export function startSettings() {
   const codes = document.getElementById("setting-codes");
   codes.checked = chosen.codes;
   codes.addEventListener("change", () => change({ codes: codes.checked }));
+  const tones = document.getElementById("setting-tones");
+  tones.checked = chosen.tones;
+  tones.addEventListener("change", () => change({ tones: tones.checked }));
   theme.addEventListener("change", () => change({ theme: theme.value }));
   motion.addEventListener("change", () => change({ motion: motion.value }));
   announce.addEventListener("change", () => change({ announce: announce.checked }));

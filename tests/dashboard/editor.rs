@@ -211,7 +211,7 @@ fn a_control_is_named_and_seen_by_that_name() {
 /// Press there, then the key: on the pad, and in the picture.
 fn bind_on_the_plate(finger: &Finger, shown: &Shown, browser: &Browser) {
     let says = |sentence: &str| {
-        browser.wait(&format!("document.querySelector('.binding').innerText.includes({sentence:?})"))
+        browser.wait(&format!("document.querySelector('.binding').innerText.includes({sentence:?})"));
     };
     let bind = |key: &str, written: &str| {
         browser.keys(&[], &[key]);

@@ -103,9 +103,9 @@ struct Manner {
 impl PracticeHand {
     const fn manner(self) -> Manner {
         let usual = Manner {
-            forces_n: [0.9, 0.9, 2.6, 4.0],
+            forces_n: [0.9, 0.9, USUAL_N, 4.0],
             middle_mm: [0.0; 2],
-            reach_mm: 18.0,
+            reach_mm: 26.0,
             miss_mm: 1.5,
             tremor_mm: 0.2,
             tremor_share: 0.03,
@@ -122,6 +122,18 @@ impl PracticeHand {
         }
     }
 }
+
+impl Manner {
+    /// Where it presses that is to press there.
+    fn reached(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let share = (self.reach_mm / libm::hypotf(x, y).max(f32::EPSILON)).min(1.0);
+        let [middle_x, middle_y] = self.middle_mm;
+        [middle_x + share * x, middle_y + share * y]
+    }
+}
+
+/// How hard an ordinary hand presses for a button.
+const USUAL_N: f32 = 2.6;
 
 /// From being asked to touching the pad.
 const REACTION_US: u64 = 600_000;
@@ -158,10 +170,27 @@ impl Practice {
             }
             Wish::Rest => Movement::Finger(Calibrator::rest()),
             Wish::Press(press) => Movement::Finger(self.presses(press)),
-            Wish::Anywhere => Movement::Finger(self.calibrator.press()),
+            Wish::Anywhere => {
+                let script = self.calibrator.press();
+                Movement::Finger(self.in_its_manner(&script))
+            }
             Wish::Lay { mark_mm, weight_g } => Movement::Weight(self.calibrator.lay(mark_mm, weight_g)),
             Wish::TakeAway => Movement::Weight(self.calibrator.take_away()),
         }
+    }
+
+    /// What an ordinary hand does, done by this one.
+    fn in_its_manner(&mut self, script: &Script) -> Script {
+        let manner = self.hand.manner();
+        let share = manner.forces_n[Level::Usual as usize] / USUAL_N;
+        let mut moved = |keyframe: &Keyframe| {
+            let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = keyframe.contact;
+            let [x_mm, y_mm] = manner.reached([x_mm, y_mm]).map(|mm| mm + self.around(0.0, manner.tremor_mm));
+            let share = share * self.around(1.0, manner.tremor_share).max(0.3);
+            let [fx_n, fy_n, fz_n] = [fx_n, fy_n, fz_n].map(|force_n| share * force_n);
+            Keyframe { contact: Contact { x_mm, y_mm, fx_n, fy_n, fz_n }, ..*keyframe }
+        };
+        Script::of(script.keyframes().iter().map(&mut moved).collect())
     }
 
     fn presses(&mut self, press: PressWish) -> Script {
@@ -183,7 +212,8 @@ impl Practice {
             1 => Level::Usual,
             _ => Level::Hard,
         };
-        let at_mm = [out_mm * angle.cos(), out_mm * angle.sin()];
+        let (sin, cos) = libm::sincosf(angle);
+        let at_mm = [out_mm * cos, out_mm * sin];
         PressWish { at_mm, push: [0.0; 2], level, is_long: false, is_double: false }
     }
 
@@ -191,11 +221,7 @@ impl Practice {
     fn press(&mut self, press: PressWish, begin_us: u64, steps: &mut Vec<Keyframe>) -> u64 {
         let manner = self.hand.manner();
         let force_n = manner.forces_n[press.level as usize] * self.around(1.0, 0.08);
-        let [x, y] = press.at_mm;
-        let share = (manner.reach_mm / x.hypot(y).max(f32::EPSILON)).min(1.0);
-        let at_mm = [0, 1].map(|axis: usize| {
-            manner.middle_mm[axis] + share * press.at_mm[axis] + self.around(0.0, manner.miss_mm)
-        });
+        let at_mm = manner.reached(press.at_mm).map(|mm| mm + self.around(0.0, manner.miss_mm));
         let at = |hand: &mut Self, strength: f32| {
             let force_n = strength * force_n * hand.around(1.0, manner.tremor_share).max(0.3);
             let [fx_n, fy_n] = press.push.map(|along| PUSH_SHARE * along * force_n);

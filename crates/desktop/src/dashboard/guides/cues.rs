@@ -220,6 +220,7 @@ mod tests {
     use tactpad_core::time::{HostInstant, StreamInstant};
     use tactpad_core::virtual_pad::script::Script;
     use tactpad_lab::tuning::trace::{Trace, TraceEvents, TracePoint};
+    use tactpad_numeric::random::SplitMix64;
 
     /// From one sample to the next, and from one look of a guide to the next.
     const SAMPLE_US: u64 = 2_500;
@@ -243,8 +244,14 @@ mod tests {
         let mut asking = Asking::begin(targets.to_vec(), repeats, seed, seen);
         let (mut script, mut asked_us) = (finger(practice.obey(asking.cue().unwrap().wish)), 0);
         let (mut moments, mut touch) = (Vec::new(), Touch::new());
+        let mut random = SplitMix64::named(seed, "noise");
         for now_us in (0..).step_by(SAMPLE_US as usize) {
-            let contact = script.contact_at(now_us - asked_us);
+            let mut contact = script.contact_at(now_us - asked_us);
+            // What a pad adds after its filter.
+            let mut noise = |deviation: f32| deviation * random.normal();
+            contact.fx_n += noise(0.02);
+            contact.fy_n += noise(0.02);
+            contact.fz_n += noise(0.02);
             touch.update(StreamInstant::from_us(now_us), &contact);
             let is_touched = touch.is_touched();
             seen.touches += u64::from(is_touched && !seen.is_touched);
@@ -295,17 +302,8 @@ mod tests {
     }
 
     #[test]
-    fn an_off_centre_hand_gets_a_profile_that_suits_it_and_one_that_ignores_the_cues_none() {
-        try_hand("super-mario", PracticeHand::OffCentre);
-        try_hand("super-mario", PracticeHand::Ignoring);
-    }
-
-    #[test]
-    #[ignore = "proof: 120 s: profiles are fitted to each hand's presses"]
-    fn each_hand_gets_a_profile_with_which_more_comes_on_other_days() {
-        for name in ["contra", "super-mario", "one-button"] {
-            HANDS.iter().for_each(|(_, hand)| try_hand(name, *hand));
-        }
+    fn each_hand_gets_a_profile_with_which_more_comes_on_other_days_and_one_that_ignores_the_cues_none() {
+        HANDS.iter().for_each(|(_, hand)| try_hand("super-mario", *hand));
     }
 
     #[test]

@@ -32,46 +32,63 @@ impl FeltPress {
     }
 }
 
+/// How unlike presses for the same cue are, by each feature.
+type Scatter = [f64; FEATURES];
+
 /// Whether presses follow the cues: each with the number of what was asked.
 pub(super) fn follow(presses: &[(usize, FeltPress)], seed: u64) -> bool {
-    let distances = distances(presses);
+    let ranks = ranks(presses);
     let mut asked: Vec<usize> = presses.iter().map(|(cue, _)| *cue).collect();
-    let is = apart(&distances, &asked);
+    let mut scatters = vec![scatter(&ranks, &asked)];
     let mut random = SplitMix64::named(seed, "orders of cues");
-    let as_close = (0..DRAWS).filter(|_| {
+    scatters.extend((0..DRAWS).map(|_| {
         random.shuffle(&mut asked);
-        apart(&distances, &asked) <= is
-    });
+        scatter(&ranks, &asked)
+    }));
+    let closeness = closeness(&scatters);
     // The asked order is one of them.
-    (1 + as_close.count()) as f64 <= ERROR_RATE * (1 + DRAWS) as f64
+    let as_close = closeness.iter().filter(|it| Some(*it) >= closeness.first()).count();
+    as_close as f64 <= ERROR_RATE * scatters.len() as f64
 }
 
-/// How unlike presses for the same cue are, in all.
-fn apart(distances: &[Vec<f64>], asked: &[usize]) -> f64 {
-    let pairs = distances
-        .iter()
-        .enumerate()
-        .flat_map(|(index, row)| row.iter().take(index).enumerate().map(move |pair| (index, pair)));
-    pairs
-        .filter(|(one, (other, _))| asked.get(*one) == asked.get(*other))
-        .map(|(_, (_, distance))| distance)
-        .sum()
-}
-
-/// How unlike each two presses are: each feature counts by its ranks, so that one press that is far from all others does not decide.
-fn distances(presses: &[(usize, FeltPress)]) -> Vec<Vec<f64>> {
+/// Each feature by its ranks, so that one press that is far from all others does not decide.
+fn ranks(presses: &[(usize, FeltPress)]) -> Vec<[f64; FEATURES]> {
     let features: Vec<_> = presses.iter().map(|(_, press)| press.features()).collect();
     let ranked = |feature: usize, value: f64| {
         let below = features.iter().filter(|other| other[feature] < value).count();
         let same = features.iter().filter(|other| other[feature] == value).count();
         below as f64 + 0.5 * same as f64
     };
-    let ranks: Vec<[f64; FEATURES]> =
-        features.iter().map(|press| std::array::from_fn(|feature| ranked(feature, press[feature]))).collect();
-    let distance = |one: &[f64; FEATURES], other: &[f64; FEATURES]| {
-        one.iter().zip(other).map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
+    features.iter().map(|press| std::array::from_fn(|feature| ranked(feature, press[feature]))).collect()
+}
+
+fn scatter(ranks: &[[f64; FEATURES]], asked: &[usize]) -> Scatter {
+    let mut scatter = [0.0; FEATURES];
+    for (index, (one, cue)) in ranks.iter().zip(asked).enumerate() {
+        let same = ranks.iter().zip(asked).take(index).filter(|(_, other)| *other == cue);
+        for (other, _) in same {
+            scatter
+                .iter_mut()
+                .zip(one.iter().zip(other))
+                .for_each(|(sum, (one, other))| *sum += (one - other).powi(2));
+        }
+    }
+    scatter
+}
+
+/// How alike presses for the same cue are in each order: by how many standard deviations of all orders each feature scatters less than in the
+/// mean of them, squared and added up. What tells cues apart counts so, and what does not counts little.
+fn closeness(scatters: &[Scatter]) -> Vec<f64> {
+    let count = scatters.len() as f64;
+    let moments: [(f64, f64); FEATURES] = std::array::from_fn(|feature| {
+        let mean = scatters.iter().map(|it| it[feature]).sum::<f64>() / count;
+        let variance = scatters.iter().map(|it| (it[feature] - mean).powi(2)).sum::<f64>() / count;
+        (mean, variance.sqrt())
+    });
+    let close = |value: f64, (mean, deviation): (f64, f64)| {
+        if deviation > 0.0 { ((mean - value) / deviation).max(0.0).powi(2) } else { 0.0 }
     };
-    ranks.iter().map(|one| ranks.iter().map(|other| distance(one, other)).collect()).collect()
+    scatters.iter().map(|it| it.iter().zip(moments).map(|(value, of)| close(*value, of)).sum()).collect()
 }
 
 #[cfg(test)]
@@ -102,6 +119,9 @@ mod tests {
         ("one finger", Hand { force_n: 1.5, centre_mm: [0.0; 2], reach_mm: 8.0, trembles_mm: 2.0 }),
         ("off-centre", Hand { force_n: 1.5, centre_mm: [-9.0, 7.0], reach_mm: 12.0, trembles_mm: 2.5 }),
     ];
+
+    /// What a hand does for the cue of this number.
+    type HandAt = dyn Fn(usize, &mut SplitMix64) -> FeltPress;
 
     fn pressed(hand: Hand, cue: usize, random: &mut SplitMix64) -> FeltPress {
         let mut around = |middle: f64, deviation: f64| middle + deviation * f64::from(random.normal());
@@ -143,7 +163,7 @@ mod tests {
     fn hands_that_ignore_the_cues_are_believed_once_in_a_hundred_at_most() {
         let mut random = SplitMix64::named(7, "ignoring hands");
         // One presses as it likes, one goes round and round, one does always the same, one grows tired, one does nothing.
-        let ignoring: [(&str, &dyn Fn(usize, &mut SplitMix64) -> FeltPress); 5] = [
+        let ignoring: [(&str, &HandAt); 5] = [
             ("as it likes", &|_, random| {
                 let cue = (random.next_bits() % 6) as usize;
                 pressed(HANDS[1].1, cue, random)

@@ -128,7 +128,7 @@ class GuideCard {
 
   /** A button; where the action takes a number, the field stands before it. */
   #action({ do: name, label, number: asked }) {
-    if (asked === null) return button(label, () => this.view.act(this.id, name));
+    if (asked === null) return button(label, () => this.view.act(this.id, name), { class: "main" });
     const { least: min, largest: max } = asked;
     const choose = () => {
       const value = field.read();

@@ -41,6 +41,7 @@ function followFrames(views) {
     trace.take(frame.trace);
     trace.forget(frame.t_us);
     views.live.take(frame);
+    views.profile.take(frame);
     screen.ask();
   });
   screen.add(section("live"), () => views.live.draw());

@@ -192,7 +192,7 @@ pub struct EffectLabel {
 impl Sketch {
     /// Of a profile.
     pub fn of(profile: &Profile) -> Self {
-        let mut words = WordPlaces::around(profile.centre_mm);
+        let mut words = WordPlaces::on(PLATE_MM, profile.centre_mm);
         Self {
             name: profile.name.clone(),
             output: profile.output.name(),

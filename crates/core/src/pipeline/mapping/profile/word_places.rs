@@ -1,7 +1,5 @@
 //! Where words stand on a drawn plate: each where it covers no other one and no line, and within what it names.
 
-use super::sketch::PLATE_MM;
-
 /// Letters are at most so high where a plate is drawn,
 const LETTER_MM: f32 = 2.8;
 /// and so wide, of their height.
@@ -54,15 +52,18 @@ impl WordBox {
     }
 }
 
-/// The words of a plate whose hand has its centre here.
+/// The words of a plate.
 pub(super) struct WordPlaces {
+    /// Radius of the plate.
+    plate_mm: f32,
+    /// The centre of the hand.
     centre_mm: [f32; 2],
     taken: Vec<WordBox>,
 }
 
 impl WordPlaces {
-    pub(super) const fn around(centre_mm: [f32; 2]) -> Self {
-        Self { centre_mm, taken: Vec::new() }
+    pub(super) const fn on(plate_mm: f32, centre_mm: [f32; 2]) -> Self {
+        Self { plate_mm, centre_mm, taken: Vec::new() }
     }
 
     /// The best of the candidates, of which earlier ones are better; no part of the word is to be nearer to the hand's centre than `from_mm`.
@@ -91,7 +92,7 @@ impl WordPlaces {
         for (is_so, price) in [
             (near_mm < from_mm, TOO_NEAR + 10.0 * (from_mm - near_mm)),
             (is_outside, OUTSIDE),
-            (inner_mm < PLATE_MM && outer_mm > PLATE_MM, ON_A_LINE),
+            (inner_mm < self.plate_mm && outer_mm > self.plate_mm, ON_A_LINE),
         ] {
             if is_so {
                 cost += price;

@@ -303,12 +303,16 @@ export class ProfileView {
     if (name !== null) await this.#write(name, null);
   }
 
+  /** Takes a frame, drawn or not. */
+  take(frame) {
+    this.plateBinding?.take(frame);
+  }
+
   /** Follows the finger. */
   draw(frame) {
     if (this.text === undefined || frame === undefined) return;
     this.finger.draw(frame.contact, frame.uncertainty, null);
     this.forceHandles.forces.draw(frame.contact);
-    this.plateBinding.draw(frame);
   }
 
   /** Says at the top of every view when a draft is played. */

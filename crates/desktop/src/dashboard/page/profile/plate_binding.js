@@ -72,6 +72,12 @@ export class PlateBinding {
     return this.values.draft.sketch;
   }
 
+  /** Whoever goes to another view is asked no more. */
+  get #asks() {
+    if (this.#state === "where" && !this.node.checkVisibility()) this.#go("off", "");
+    return this.#state === "where";
+  }
+
   #go(state, sentence) {
     this.#state = state;
     this.#pressed = null;
@@ -95,21 +101,21 @@ export class PlateBinding {
 
   /** What the pad types into this page while it is pressed is no answer. */
   #key(event) {
-    if (this.#state !== "where" || FREE_KEYS.has(event.key)) return;
+    if (!this.#asks || FREE_KEYS.has(event.key)) return;
     event.preventDefault();
     event.stopPropagation();
     if (event.key === "Escape") this.#leave("Left as it is.");
   }
 
-  /** Follows the pad: a press is over once nothing is held any more. */
-  draw({ contact, held }) {
-    if (this.#state !== "where") return;
-    if (contact !== null) {
-      const most = Math.max(contact.fz_n, Math.abs(contact.fx_n), Math.abs(contact.fy_n));
-      if (this.#pressed === null || most > this.#pressed.most) this.#pressed = { ...contact, most };
-    } else if (this.#pressed !== null && held.length === 0) {
-      this.#found(bindingsAt(this.#sketch, { x: this.#pressed.x_mm, y: -this.#pressed.y_mm }, this.#pressed));
+  /** Follows the pad, frame by frame: a press is over once nothing is held any more. */
+  take({ trace, contact, held }) {
+    if (!this.#asks) return;
+    for (const [, x_mm, y_mm, fx_n, fy_n, fz_n] of trace.filter((point) => point.length > 1)) {
+      const most = Math.max(fz_n, Math.abs(fx_n), Math.abs(fy_n));
+      if (this.#pressed === null || most > this.#pressed.most) this.#pressed = { x_mm, y_mm, fx_n, fy_n, fz_n, most };
     }
+    if (contact !== null || this.#pressed === null || held.length > 0) return;
+    this.#found(bindingsAt(this.#sketch, { x: this.#pressed.x_mm, y: -this.#pressed.y_mm }, this.#pressed));
   }
 
   #found(bindings) {

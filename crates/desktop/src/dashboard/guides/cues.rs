@@ -209,9 +209,9 @@ pub(super) fn fitted(
 
 #[cfg(test)]
 mod tests {
-    use super::super::asking::{Asking, Seen};
+    use super::super::asking::{Asked, Asking, Seen};
     use super::super::force_range;
-    use super::super::pieces::Answer;
+    use super::super::pieces::TAIL_US;
     use super::super::recording::judged;
     use super::*;
     use crate::dashboard::practice::{HANDS, Movement, Practice, PracticeHand};
@@ -264,13 +264,13 @@ mod tests {
             }
             assert!(now_us < 900_000_000, "the cues do not end");
         }
-        let us = |moment: HostInstant| moment.us_since(at(0));
-        let answers = asking.asked.iter().map(|it| Answer {
-            target: it.target,
-            begin_us: us(it.begin),
-            end_us: us(it.end),
-        });
-        Pieces::of(&Trace::new(moments), answers)
+        let stretch = |it: &Asked| {
+            let [from_us, to_us] = [it.begin, it.end.plus_us(TAIL_US)].map(|moment| moment.us_since(at(0)));
+            let own = moments.iter().filter(|it| (from_us..to_us).contains(&it.at.as_us()));
+            let begun = |it: &TracePoint| StreamInstant::from_us(it.at.as_us() - from_us);
+            (it.target, Trace::new(own.map(|it| TracePoint { at: begun(it), ..*it }).collect()))
+        };
+        Pieces::of(asking.asked.iter().map(stretch))
     }
 
     /// How many of the cues come out.

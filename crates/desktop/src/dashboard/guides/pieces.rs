@@ -7,9 +7,9 @@ use tactpad_lab::tuning::trace::{Trace, TraceEvents, TracePoint};
 
 /// So much before the first touch of a cue and after the last belongs to it.
 const LEAD_US: u64 = 300_000;
-const TAIL_US: u64 = 600_000;
+pub(super) const TAIL_US: u64 = 600_000;
 
-/// A cue, by the number of its target, and from when to when it was answered, in the recording's time.
+/// A cue, by the number of its target, and from when to when it was answered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Answer {
     pub(super) target: usize,
@@ -26,24 +26,25 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    /// Those of these cues, in the order in which these are given.
-    pub(super) fn of(trace: &Trace, answers: impl IntoIterator<Item = Answer>) -> Self {
-        let (mut moments, mut placed, mut now_us) = (Vec::new(), Vec::new(), 0);
-        for Answer { target, begin_us, end_us } in answers {
-            let own = within(trace, begin_us, end_us);
-            let touch_us = own.iter().find(|it| touch(it).is_some()).map(|it| it.at.as_us());
-            let from_us = touch_us.map_or(begin_us, |us| us.saturating_sub(LEAD_US).max(begin_us));
+    /// Of stretches of a recording: the target of each cue, and what came from when it was given until after the pad was left.
+    pub(super) fn of(stretches: impl IntoIterator<Item = (usize, Trace)>) -> Self {
+        let (mut moments, mut answers, mut now_us) = (Vec::new(), Vec::new(), 0);
+        for (target, trace) in stretches {
+            let all_us = trace.duration_us();
+            let mut touched_us =
+                trace.moments().iter().filter(|it| touch(it).is_some()).map(|it| it.at.as_us());
+            let first_us = touched_us.next();
+            let end_us = touched_us.next_back().or(first_us).unwrap_or(all_us);
+            let from_us = first_us.map_or(0, |us| us.saturating_sub(LEAD_US));
             let to_us = end_us + TAIL_US;
             let moved = |us: u64| us - from_us + now_us;
-            moments.extend(
-                within(trace, from_us, to_us)
-                    .iter()
-                    .map(|it| TracePoint { at: StreamInstant::from_us(moved(it.at.as_us())), ..*it }),
-            );
-            placed.push(Answer { target, begin_us: moved(from_us), end_us: moved(end_us) });
+            let own = within(&trace, from_us, to_us).iter();
+            moments
+                .extend(own.map(|it| TracePoint { at: StreamInstant::from_us(moved(it.at.as_us())), ..*it }));
+            answers.push(Answer { target, begin_us: moved(from_us), end_us: moved(end_us) + 1 });
             now_us = moved(to_us) + 1;
         }
-        Self { trace: Trace::new(moments), answers: placed }
+        Self { trace: Trace::new(moments), answers }
     }
 
     /// The press that came for each cue.

@@ -3,18 +3,17 @@
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
-use super::asking::{Asking, CueTarget, Seen};
+use super::asking::{Asked, Asking, CueTarget, Seen};
 use super::followed::{ERROR_RATE, follow};
 use super::guide::{
     GuideContext, GuideResult, GuideState, NO_ACTION, PageStep, PendingResult, StepAction, StepState, Target,
 };
-use super::pieces::{Answer, Pieces};
+use super::pieces::{Pieces, TAIL_US};
 use crate::dashboard::call_subscribers::TimedCall;
 use crate::dashboard::practice::Wish;
 use crate::dashboard::replay_buffer::{ReplayBuffer, make};
 use crate::dashboard::user_key::random;
 use tactpad_core::pipeline::call::OwnedCall;
-use tactpad_core::time::HostInstant;
 use tactpad_lab::tuning::trace::{Trace, Tracer};
 
 /// Why a profile cannot be fitted that was named by its file.
@@ -46,7 +45,6 @@ pub(super) enum Recording {
 pub(super) struct Ongoing {
     asking: Asking,
     seed: u64,
-    begin: HostInstant,
     past: ReplayBuffer,
     heard: Receiver<TimedCall>,
     calls: Vec<TimedCall>,
@@ -87,7 +85,7 @@ impl Recording {
         let heard = (context.subscribe)();
         let past = (context.past)().ok_or("there is no pad yet: plug it in, then begin")?;
         let asking = Asking::begin(targets, repeats, seed, seen(context));
-        let ongoing = Ongoing { asking, seed, begin: context.now, past, heard, calls: Vec::new(), bytes: 0 };
+        let ongoing = Ongoing { asking, seed, past, heard, calls: Vec::new(), bytes: 0 };
         ongoing.tell(context);
         Ok(Self::On(Box::new(ongoing)))
     }
@@ -206,14 +204,8 @@ fn worked(
 ) -> Recording {
     let (tell, worked) = channel();
     let spawned = thread::Builder::new().name("guide".into()).spawn(move || {
-        let Ongoing { asking, seed, begin, past, calls, .. } = ongoing;
-        let us = |at: HostInstant| at.us_since(begin);
-        let answers = asking.asked.iter().map(|it| Answer {
-            target: it.target,
-            begin_us: us(it.begin),
-            end_us: us(it.end),
-        });
-        let pieces = Pieces::of(&traced(past, &calls), answers);
+        let Ongoing { asking, seed, past, calls, .. } = ongoing;
+        let pieces = Pieces::of(stretches(past, &calls, &asking.asked));
         // Who stopped the guide does not hear it.
         let _ = tell.send(judged(&pieces, seed, work));
     });
@@ -240,13 +232,22 @@ pub(super) fn judged(
     ))
 }
 
-/// The contacts of the calls that came after those of the past.
-fn traced(past: ReplayBuffer, calls: &[TimedCall]) -> Trace {
+/// What came for each cue. The pad's clock may have jumped in between, so each stretch has its own begin.
+fn stretches(past: ReplayBuffer, calls: &[TimedCall], asked: &[Asked]) -> Vec<(usize, Trace)> {
     let ReplayBuffer { begin: mut pipeline, calls: earlier, .. } = past;
     let until = earlier.back().map(|(at, _)| *at);
     earlier.iter().for_each(|(at, call)| make(&mut pipeline, *at, call, |_| ()));
-    let mut tracer = Tracer::going_on(pipeline);
-    let new = calls.iter().filter(|(at, _)| until.is_none_or(|until| *at > until));
-    new.for_each(|(at, call)| tracer.apply(*at, call.as_call()));
-    tracer.finish()
+    let mut calls = calls.iter().filter(|(at, _)| until.is_none_or(|until| *at > until)).peekable();
+    let stretch = |asked: &Asked| {
+        while let Some((at, call)) = calls.next_if(|(at, _)| *at < asked.begin) {
+            make(&mut pipeline, *at, call, |_| ());
+        }
+        let mut tracer = Tracer::going_on(pipeline.clone());
+        while let Some((at, call)) = calls.next_if(|(at, _)| *at < asked.end.plus_us(TAIL_US)) {
+            tracer.apply(*at, call.as_call());
+            make(&mut pipeline, *at, call, |_| ());
+        }
+        (asked.target, tracer.finish())
+    };
+    asked.iter().map(stretch).collect()
 }

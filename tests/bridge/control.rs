@@ -132,19 +132,39 @@ fn a_bridge_without_a_pad_waits_and_says_so() {
 }
 
 #[test]
-fn only_one_bridge_has_the_socket_and_a_dead_ones_is_taken_over() {
+fn each_further_bridge_has_a_number_and_a_dead_ones_socket_is_taken_over() {
     let first = start(&["--pad", "serial:pad", "--wait"]);
     await_status(&first, "waits", |status| status["state"] == "waiting");
-    let second = tactpad(first.folder.path())
-        .args(["run", "--pad", "virtual", "--output", "none", "--seconds", "1"])
-        .output()
-        .unwrap();
-    assert!(second.status.success());
-    assert!(String::from_utf8_lossy(&second.stderr).contains("does not reach this bridge"));
+    let folder = first.folder.path().to_owned();
+    let asked = |line: &str| {
+        let answer =
+            tactpad(&folder).arg("ctl").args(line.split(' ')).stdout(Stdio::piped()).output().unwrap();
+        [answer.stdout, answer.stderr].map(|told| String::from_utf8(told).unwrap())
+    };
+    let begun = |arguments: &[&str]| {
+        tactpad(&folder).args(arguments).args(["--output", "none"]).stderr(Stdio::piped()).spawn().unwrap()
+    };
+    let second = begun(&["run", "--pad", "virtual"]);
+    assert!(comes_true(|| asked("status --name 2 --json")[0].contains("\"state\":\"playing\"")));
     assert_eq!(first.status()["state"], "waiting");
+    let [_, refused] = asked("next-profile --name 2");
+    assert!(refused.contains("tactpad ctl profile NAME") && refused.contains("next-profile"), "{refused}");
+    let demo = begun(&["demo", "--seconds", "600"]);
+    assert!(comes_true(|| asked("status --name demo --json")[0].contains("\"state\":\"playing\"")));
+    // Without the first, a bridge is asked by its name, or by none if it is the only one.
+    asked("quit");
+    assert!(comes_true(|| !folder.join("tactpad.sock").exists()));
+    let [_, which] = asked("status");
+    assert!(which.contains("say which one by `--name 2` or `--name demo`"), "{which}");
+    asked("quit --name demo");
+    assert!(!demo.wait_with_output().unwrap().status.success(), "what was interrupted is no proof");
+    assert!(comes_true(|| asked("status --json")[0].contains("\"state\":\"playing\"")));
+    asked("quit");
+    let second = second.wait_with_output().unwrap();
+    assert!(String::from_utf8_lossy(&second.stderr).contains("(tactpad ctl --name 2)"));
+    assert!(second.status.success());
 
-    let socket = first.folder.path().join("tactpad.sock");
-    fs::remove_file(&socket).unwrap();
+    let socket = folder.join("tactpad.sock");
     drop(UnixListener::bind(&socket).unwrap());
     let third = tactpad(first.folder.path())
         .args(["run", "--pad", "virtual", "--output", "none", "--seconds", "1"])

@@ -82,6 +82,18 @@ fn look(browser: &Browser, views: &[&str], state: &str) {
             for view in views {
                 browser.view(view);
                 let what = format!("{view}-{state}-{width}-{theme}");
+                if *view == "live" {
+                    // Folded away in the one, there in the other.
+                    browser.run(&format!(
+                        "document.getElementById('measurements').open = {}; scrollTo(0, 0)",
+                        theme == "dark"
+                    ));
+                }
+                if *view == "doctor" {
+                    // It knows the bridge that it is asked from, and each finding can be copied.
+                    browser.wait("document.getElementById('doctor').innerText.includes('one is running')");
+                    browser.wait("[...document.querySelectorAll('#doctor li')].every((it) => it.querySelector('button'))");
+                }
                 let beside = browser.run("return document.documentElement.scrollWidth - innerWidth");
                 assert!(beside.as_f64() <= Some(0.0), "{what}: {beside} pixels are beside the window");
                 assert_eq!(findings(browser, &what), Vec::<String>::new());

@@ -203,6 +203,50 @@ fn a_control_is_named_and_seen_by_that_name() {
     finger.press(0.0, 3.0, 3.0);
     browser.wait("document.querySelector('#live .chips').innerText.includes('A: hop')");
     assert_eq!(shown.status()["held_names"], serde_json::json!(["A: hop"]));
+    finger.lift();
+    browser.view("profile");
+    bind_on_the_plate(&finger, &shown, &browser);
+}
+
+/// Press there, then the key: on the pad, and in the picture.
+fn bind_on_the_plate(finger: &Finger, shown: &Shown, browser: &Browser) {
+    let says = |sentence: &str| {
+        browser.wait(&format!("document.querySelector('.binding').innerText.includes({sentence:?})"));
+    };
+    let bind = |key: &str, written: &str| {
+        browser.keys(&[], &[key]);
+        assert!(comes_true(|| text(browser).contains(written)), "{written}: {}", text(browser));
+    };
+    let press = |x_mm: f32, y_mm: f32, fz_n: f32| {
+        browser.click("#bind");
+        says("Press on the pad");
+        finger.press(x_mm, y_mm, fz_n);
+        assert!(comes_true(|| shown.status()["held"].as_array().is_some_and(|held| !held.is_empty())));
+        finger.lift();
+    };
+    press(15.0, 0.0, 1.0);
+    says("right: press its key");
+    bind("j", "right = \"KEY_J\"");
+    says("right is J on the keyboard now. This profile plays the gamepad");
+    // Where the whole press does something, that is meant.
+    press(0.0, 15.0, 3.0);
+    says("A: hop: press its key");
+    bind("k", "keyboard = \"KEY_K\", label = \"hop\"");
+    // In the picture all that counts there may be meant.
+    browser.click("#bind");
+    says("Press on the pad");
+    browser.run("const plate = document.querySelector('#profile .plate'); const box = plate.getBoundingClientRect(); \
+         plate.dispatchEvent(new MouseEvent('click', { clientX: box.x + box.width / 2, clientY: box.y + box.height / 2, bubbles: true }))");
+    says("Which one?");
+    browser.click_button(".binding", "B: fire");
+    says("B: fire: press its key");
+    bind("l", "\"KEY_L\"");
+    // What is left stays as it was.
+    let before = text(browser);
+    browser.click("#bind");
+    browser.keys(&[], &["\u{e00c}"]);
+    says("Left as it is.");
+    assert_eq!(text(browser), before);
 }
 
 #[test]

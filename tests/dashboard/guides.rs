@@ -43,62 +43,97 @@ fn the_first_run_goes_from_the_pad_to_the_third_press() {
     assert_eq!(act(&shown, "no-guide", "start").0, 404);
 }
 
-/// Presses again and again for so long: five times in three seconds.
-fn press_for(finger: &Finger, shown: &Shown, seconds: u32, fz_n: f32, until: impl Fn() -> bool) {
-    for _ in 0..2 * seconds {
-        if until() {
-            return;
+/// A bridge whose virtual pad is touched by this practice hand.
+fn practised(hand: &str) -> Shown {
+    Shown::start_with("virtual", "contra", &["--hand", hand])
+}
+
+/// The step that is done now.
+fn doing(shown: &Shown, id: &str) -> Value {
+    let guide = guide(shown, id);
+    guide["steps"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|step| step["state"] == "doing")
+        .cloned()
+        .unwrap_or_default()
+}
+
+#[test]
+fn cues_are_lit_answered_at_the_pace_of_the_hand_paused_repeated_and_left_out() {
+    let shown = practised("off-centre");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    shown.wait_until_playing();
+    browser.view("guides");
+    let choose = |label: &str| browser.click_button("[aria-labelledby=guide-tune]", label);
+    choose("Start");
+    browser.wait("document.querySelector('#guides .cue:not([hidden])')?.textContent.includes('press')");
+    browser.wait("document.querySelector('.lit-plate:not([hidden]) .lit') && document.querySelector('.lit-plate .sector')");
+    let is_at = |count: &str| doing(&shown, "tune")["detail"].as_str() == Some(count);
+    assert!(comes_true(|| is_at("3 of 18")), "{}", doing(&shown, "tune"));
+    choose("Pause");
+    assert!(comes_true(|| is_at("it pauses")));
+    browser.wait("!document.querySelector('.lit-plate:not([hidden])')");
+    choose("Go on");
+    browser.wait("document.querySelector('.lit-plate:not([hidden]) .lit')");
+    choose("I cannot do this one");
+    assert!(comes_true(|| doing(&shown, "tune")["detail"].as_str().is_some_and(|it| it.ends_with("of 15"))));
+    let asked = doing(&shown, "tune")["progress"].as_f64();
+    choose("The last one again");
+    assert!(doing(&shown, "tune")["progress"].as_f64() <= asked, "{}", doing(&shown, "tune"));
+    choose("Stop");
+    assert!(comes_true(|| guide(&shown, "tune")["state"] == "idle"));
+}
+
+/// A guide that this hand has gone through, to its end.
+fn ended(hand: &str, id: &str) -> (Shown, Value) {
+    let shown = practised(hand);
+    shown.wait_until_playing();
+    assert_eq!(act(&shown, id, "start").0, 200);
+    // Each question waits for as long as a test may.
+    for _ in 0..10 {
+        if comes_true(|| guide(&shown, id)["state"] != "running") {
+            break;
         }
-        finger.press(0.0, 0.0, fz_n);
-        assert!(comes_true(|| shown.status()["contact"] != Value::Null));
-        finger.stays(200);
-        finger.lift();
-        finger.stays(200);
+    }
+    let ended = guide(&shown, id);
+    (shown, ended)
+}
+
+#[test]
+#[ignore = "proof: 400 s: practice hands take their time"]
+fn each_guide_ends_well_with_each_practice_hand_and_proposes_nothing_to_one_that_ignores_it() {
+    for hand in ["weak", "trembling", "one-finger", "off-centre", "ignoring"] {
+        for id in ["force-range", "tune"] {
+            let (_shown, guide) = ended(hand, id);
+            let result = &guide["result"];
+            println!("{hand}, {id}: {}", result["text"]);
+            if hand == "ignoring" {
+                // Once in a hundred times it is believed, as the guide says.
+                assert_eq!(
+                    (guide["state"].as_str(), &result["draft"]),
+                    (Some("failed"), &Value::Null),
+                    "{guide}"
+                );
+            } else {
+                assert_eq!(guide["state"], "done", "{hand}, {id}: {guide}");
+            }
+        }
     }
 }
 
 #[test]
-#[ignore = "proof: 65 s: the guide listens for a minute of real time"]
-fn half_a_minute_of_presses_gives_a_draft_with_the_forces_of_the_hand() {
-    let finger = Finger::start();
-    let shown = Shown::start(&finger.address(), "contra");
+#[ignore = "proof: 60 s: a practice hand takes its time"]
+fn presses_that_follow_give_a_draft_with_the_forces_of_the_hand() {
+    let (shown, guide) = ended("weak", "force-range");
     let Some(browser) = Browser::open(&shown.url) else { return };
-    shown.wait_until_playing();
     browser.view("guides");
-    assert_eq!(act(&shown, "force-range", "start").0, 200);
-    let is_hard = || states(&guide(&shown, "force-range"))[1] == "doing";
-    press_for(&finger, &shown, 30, 0.6, is_hard);
-    assert_eq!(states(&guide(&shown, "force-range")), ["done", "doing", "todo"]);
-    press_for(&finger, &shown, 30, 4.0, || guide(&shown, "force-range")["steps"][1]["state"] != "doing");
-    assert!(
-        comes_true(|| guide(&shown, "force-range")["state"] == "done"),
-        "{}",
-        guide(&shown, "force-range")
-    );
-    let result = guide(&shown, "force-range")["result"].clone();
-    let draft = result["draft"]["text"].as_str().unwrap_or_else(|| panic!("{result}"));
+    let draft = guide["result"]["draft"]["text"].as_str().unwrap_or_else(|| panic!("{guide}"));
     assert!(draft.contains("# ") && !draft.contains("press_n = 2.0"), "{draft}");
-    assert_eq!(result["draft"]["profile"], "contra");
     assert!(!shown.profile("contra").exists(), "nothing is kept before people say so");
     browser.click_button("#guides", "Open contra with it in the editor");
     browser.wait("document.getElementById('profile-text')?.value.length > 0");
     let text = browser.run("return document.getElementById('profile-text').value");
     assert_eq!(text.as_str(), Some(draft));
-}
-
-#[test]
-fn cues_ask_for_what_the_profile_can_and_are_stopped_at_any_time() {
-    let finger = Finger::start();
-    let shown = Shown::start(&finger.address(), "contra");
-    let Some(_browser) = Browser::open(&shown.url) else { return };
-    shown.wait_until_playing();
-    let (status, begun) = act(&shown, "tune", "start");
-    assert_eq!((status, begun["state"].as_str()), (200, Some("running")));
-    assert!(comes_true(|| guide(&shown, "tune")["steps"][0]["cue"]
-        .as_str()
-        .is_some_and(|cue| cue.contains("right"))));
-    assert!(comes_true(|| guide(&shown, "tune")["steps"][0]["cue"]
-        .as_str()
-        .is_some_and(|cue| cue.contains("up"))));
-    assert_eq!(act(&shown, "tune", "stop").1["state"], "idle");
 }

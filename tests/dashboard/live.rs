@@ -82,6 +82,16 @@ fn the_profile_is_chosen_on_the_page() {
     browser.run("const choice = document.getElementById('profile-choice'); choice.value = 'tetris'; choice.dispatchEvent(new Event('change', { bubbles: true }))");
     assert!(comes_true(|| shown.status()["profile"] == "Tetris"), "{}", shown.status());
     browser.wait("document.getElementById('live').innerText.includes('Tetris')");
+    browser.click("#next-profile");
+    assert!(comes_true(|| shown.status()["profile"] != "Tetris"), "{}", shown.status());
+    // What is measured is folded away, and found as it was left.
+    assert_eq!(browser.run("return document.querySelector('.channels').checkVisibility()"), false);
+    browser.click("#measurements > summary");
+    browser.wait("document.querySelector('.channels .good')?.innerText === 'ok'");
+    browser.reload();
+    browser.wait(
+        "document.querySelector('.channels')?.checkVisibility() && document.querySelector('.channels .good')",
+    );
 }
 
 #[test]

@@ -22,6 +22,13 @@ impl Shown {
         Self::start_in(tempfile::tempdir().unwrap(), pad, profile)
     }
 
+    /// The same with further arguments.
+    pub(crate) fn start_with(pad: &str, profile: &str, further: &[&str]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let home = folder.path().to_owned();
+        Self::start_at_with(&home, folder, pad, profile, further)
+    }
+
     /// The same in a folder that is there, into the event log `log` in it.
     pub(crate) fn start_in(folder: tempfile::TempDir, pad: &str, profile: &str) -> Self {
         let home = folder.path().to_owned();
@@ -30,8 +37,21 @@ impl Shown {
 
     /// The same for a user whose settings and whose state are in `home`.
     pub(crate) fn start_at(home: &Path, folder: tempfile::TempDir, pad: &str, profile: &str) -> Self {
+        Self::start_at_with(home, folder, pad, profile, &[])
+    }
+
+    fn start_at_with(
+        home: &Path,
+        folder: tempfile::TempDir,
+        pad: &str,
+        profile: &str,
+        further: &[&str],
+    ) -> Self {
         let mut program = Running::program(env!("CARGO_BIN_EXE_tactpad"), folder.path());
-        program.args(["run", "--pad", pad, "--profile", profile, "--dashboard", "--output"]);
+        program
+            .args(["run", "--pad", pad, "--profile", profile, "--dashboard"])
+            .args(further)
+            .arg("--output");
         program.arg(format!("log:{}", folder.path().join("log").display()));
         program.env("XDG_STATE_HOME", home).env("XDG_CONFIG_HOME", home);
         let running = Running::start(folder, program);

@@ -181,7 +181,7 @@ fn connect(path: &Path) -> io::Result<UnixStream> {
 ///
 /// # Errors
 /// Nobody listens, or who listens lets nobody in: then the kind is `TimedOut`, though nobody is waited for.
-pub(super) fn connect_at_once(path: &Path) -> io::Result<UnixStream> {
+fn connect_at_once(path: &Path) -> io::Result<UnixStream> {
     let flags = SocketFlags::CLOEXEC | SocketFlags::NONBLOCK;
     let socket = socket_with(AddressFamily::UNIX, SocketType::STREAM, flags, None)?;
     match net::connect(&socket, &SocketAddrUnix::new(path)?) {
@@ -192,6 +192,11 @@ pub(super) fn connect_at_once(path: &Path) -> io::Result<UnixStream> {
     let stream = UnixStream::from(socket);
     stream.set_nonblocking(false)?;
     Ok(stream)
+}
+
+/// Whether a bridge listens at `path`, be it one that does not answer.
+pub fn is_there(path: &Path) -> bool {
+    connect_at_once(path).map_or_else(|error| error.kind() == io::ErrorKind::TimedOut, |_| true)
 }
 
 /// Asks the bridge that listens at `path`; gives its line of JSON.

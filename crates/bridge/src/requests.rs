@@ -13,7 +13,7 @@ use std::thread;
 
 use signal_hook::{flag, low_level};
 
-use crate::control::{Server, connect_at_once};
+use crate::control::{Server, is_there};
 use crate::request::{PendingRequest, Request, RequestSender};
 use crate::signals::StartConditions;
 use crate::watchers::Watchers;
@@ -74,7 +74,7 @@ impl Requests {
     /// # Errors
     /// `AddrInUse` if another bridge listens there; or the socket cannot be made.
     pub fn listen(&mut self, path: &Path) -> io::Result<()> {
-        if connect_at_once(path).map_or_else(|error| error.kind() == io::ErrorKind::TimedOut, |_| true) {
+        if is_there(path) {
             return Err(io::ErrorKind::AddrInUse.into());
         }
         let _ = fs::remove_file(path);

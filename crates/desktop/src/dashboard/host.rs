@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::practice::Wish;
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::head::Head;
 use tactpad_core::pipeline::mapping::read::check::OutputChoice;
@@ -82,6 +83,9 @@ pub trait DashboardHost: Send + Sync {
 
     /// The page of the report of this number.
     fn report(&self, id: &str) -> Option<PathBuf>;
+
+    /// Has a virtual pad's practice hand do what a guide asks, if one plays.
+    fn practise(&self, _wish: Wish) {}
 
     /// Whether there is an earlier session to go on from, of the calibration that is kept under this name.
     fn has_session(&self, name: &str) -> bool;

@@ -24,6 +24,7 @@ mod guides;
 mod handshake;
 pub mod host;
 mod listener;
+pub mod practice;
 mod refusal;
 mod replay_buffer;
 mod rewind;

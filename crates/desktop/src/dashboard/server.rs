@@ -102,7 +102,7 @@ fn router(app: Arc<AppState>, guard: Arc<Guard>) -> Router {
         .route(OPEN_PATH, get(open))
         .route(HANDSHAKE_PATH, post(handshake::answer))
         .route("/api/keys", get(handshake::keys))
-        .route("/page/{name}", get(assets::file))
+        .route("/page/{*path}", get(assets::file))
         .route("/report/{id}", get(api::report))
         .route("/sheet/{name}", get(api::sheet))
         .route("/api/live", get(websocket::upgrade))

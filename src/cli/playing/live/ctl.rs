@@ -4,20 +4,20 @@ pub(super) mod answer;
 mod weigh;
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use serde_json::Value;
 
 use self::answer::{answered, no_answer};
 use super::left_keys;
-use super::runtime::{BridgeName, socket_path};
+use super::runtime::{self, BridgeName, socket_path};
 use super::sound::{Sounds, Which};
 use crate::cli::failure::Failure;
 use crate::cli::number;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::{printable, stdout};
-use tactpad::bridge::control::watch;
+use tactpad::bridge::control::{is_there, watch};
 use tactpad::bridge::weighing::gain_sentence;
 
 /// Arguments of `tactpad ctl`.
@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     /// Print the bridge's answer, one JSON document.
     #[arg(long, global = true)]
     json: bool,
-    /// The bridge that was started with this name; without it the one without a name.
+    /// The bridge of this name; without it the one without a name, else the only one that plays.
     #[arg(long = "name", id = "bridge", value_name = "NAME", global = true)]
     bridge: Option<BridgeName>,
 }
@@ -89,7 +89,7 @@ enum Action {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let path = socket_path(arguments.bridge.as_ref())?;
+    let path = reached(arguments.bridge.as_ref())?;
     let request = match &arguments.action {
         Action::Watch { sound } => return watch_presses(&path, *sound),
         Action::Weigh { grams } => return weigh::run(&path, *grams, arguments.json),
@@ -105,7 +105,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Profile { name } => format!("profile {}", absolute(name)?),
     };
     let is_lifted = matches!(arguments.action, Action::Panic) && left_keys::lift();
-    if is_lifted && !arguments.json && !answer::is_there(&path) {
+    if is_lifted && !arguments.json && !is_there(&path) {
         // What was to be released is released.
         return Ok(());
     }
@@ -119,6 +119,29 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
+}
+
+/// Where the bridge listens that is meant: without a name the one that has none, else the only one there is.
+pub(super) fn reached(name: Option<&BridgeName>) -> Result<PathBuf, Failure> {
+    let path = socket_path(name)?;
+    if name.is_some() || is_there(&path) {
+        return Ok(path);
+    }
+    let mut there = Vec::new();
+    for name in runtime::named()? {
+        let path = socket_path(Some(&name))?;
+        if is_there(&path) {
+            there.push((name, path));
+        }
+    }
+    if there.len() > 1 {
+        let names: Vec<_> = there.iter().map(|(name, _)| format!("`--name {name}`")).collect();
+        return Err(Failure::Unusable(format!(
+            "several bridges play, and none of them is without a name: say which one by {}",
+            names.join(" or ")
+        )));
+    }
+    Ok(there.pop().map_or(path, |(_, path)| path))
 }
 
 /// Prints what becomes of each press, and plays a sound for it if that is asked for.

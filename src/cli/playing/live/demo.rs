@@ -10,7 +10,8 @@ use super::chosen;
 use super::displays::DisplayOptions;
 use super::files::Files;
 use super::output::{Output, log_to};
-use super::playing::{Audience, TerminalHost, microseconds, open_virtual, play, requests};
+use super::playing::{Audience, TerminalHost, microseconds, open_virtual, play, requests_at};
+use super::runtime::BridgeName;
 use super::screen::Screen;
 use crate::cli::failure::{Failure, if_read};
 use crate::cli::files::decoder_file::DecoderChoice;
@@ -98,8 +99,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = recording.recorded();
     let audience = Audience::Nobody;
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
-    let requests = requests(None, audience)?;
-    let mut prepared = arguments.shown.prepare(PAGE_MEMORY, &requests, &host.selection(), output.choice())?;
+    let (requests, reached) = requests_at(BridgeName::of_demos(), audience)?;
+    let mut prepared = arguments.shown.prepare(
+        PAGE_MEMORY,
+        reached.as_ref(),
+        &requests,
+        &host.selection(),
+        output.choice(),
+        (&PadAddress::Virtual, &arguments.device),
+    )?;
     if let Some(url) = &prepared.url {
         if_read(tell(arguments, &format!("Dashboard: {url}")))?;
     }

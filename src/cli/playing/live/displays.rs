@@ -5,11 +5,15 @@ use std::sync::{Arc, Mutex};
 use clap::Args;
 
 #[cfg(feature = "dashboard")]
-use super::page::Page;
+use super::page::{Page, Shelf};
+#[cfg(feature = "dashboard")]
+use super::practising::{self, Practising};
 use super::profile_selection::ProfileSelection;
+use super::runtime::BridgeName;
 #[cfg(feature = "tray")]
 use super::tray_profiles::TrayProfiles;
 use crate::cli::failure::Failure;
+use crate::cli::files::device::PadOptions;
 #[cfg(feature = "tray")]
 use crate::cli::printing::written::say;
 use tactpad::bridge::event_loop::Bridge;
@@ -20,6 +24,9 @@ use tactpad::bridge::request::RequestSender;
 use tactpad::bridge::requests::Requests;
 use tactpad::bridge::sink::Sink;
 use tactpad::bridge::timing::Timing;
+use tactpad::bridge::transport::address::PadAddress;
+#[cfg(feature = "dashboard")]
+use tactpad::dashboard::practice::PracticeHand;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 #[cfg(feature = "tray")]
 use tactpad::tray;
@@ -31,6 +38,10 @@ pub(super) struct DisplayOptions {
     #[cfg(feature = "dashboard")]
     #[arg(long)]
     dashboard: bool,
+    /// Have a practice hand play the virtual pad, which does what the page's guides ask: weak, trembling, one-finger, off-centre, ignoring.
+    #[cfg(feature = "dashboard")]
+    #[arg(long, value_name = "HAND", value_parser = practising::hand, requires = "dashboard")]
+    hand: Option<PracticeHand>,
     /// Show an icon among those of the desktop: what the bridge is doing, and a menu that asks it.
     #[cfg(feature = "tray")]
     #[arg(long)]
@@ -44,6 +55,8 @@ pub(super) struct OpenedDisplays {
     page: Option<Page>,
     #[cfg(feature = "tray")]
     tray: Option<(TrayProfiles, RequestSender)>,
+    /// The pad that a practice hand touches.
+    practised: Option<OpenedPad>,
     /// The observer of each call, for the page.
     pub(super) observer: Option<Observer>,
     /// Address of the page.
@@ -60,18 +73,24 @@ impl DisplayOptions {
         false
     }
 
-    /// Opens the displays of the bridge that `requests` reach. `memory` is the state file of the page's addresses.
+    /// Opens the displays of the bridge that `requests` reach, by the name `reached` if it has one. `memory` is the state file of the page's addresses.
     pub(super) fn prepare(
         self,
         memory: &str,
+        reached: Option<&BridgeName>,
         requests: &Requests,
         selection: &Arc<Mutex<ProfileSelection>>,
         output: OutputChoice,
+        (address, device): (&PadAddress, &PadOptions),
     ) -> Result<OpenedDisplays, Failure> {
         let prepared = OpenedDisplays::default();
         #[cfg(feature = "dashboard")]
         let prepared = match self.dashboard {
-            true => prepared.with_page(memory, requests.sender()?, Arc::clone(selection), output)?,
+            true => {
+                let (practised, hand) = self.practised(address, device)?.unzip();
+                let shelf = Shelf::new(reached.cloned(), Arc::clone(selection), output, hand);
+                OpenedDisplays { practised, ..prepared }.with_page(memory, requests.sender()?, shelf)?
+            }
             false => prepared,
         };
         #[cfg(feature = "tray")]
@@ -79,21 +98,29 @@ impl DisplayOptions {
             true => prepared.with_icon(requests.sender()?, Arc::clone(selection)),
             false => prepared,
         };
-        let _ = (memory, requests, selection, output);
+        let _ = (memory, reached, requests, selection, output, address, device);
         Ok(prepared)
+    }
+
+    /// The pad of the practice hand that is asked for, and the hand.
+    #[cfg(feature = "dashboard")]
+    fn practised(
+        self,
+        address: &PadAddress,
+        device: &PadOptions,
+    ) -> Result<Option<(OpenedPad, Practising)>, Failure> {
+        let Some(hand) = self.hand else { return Ok(None) };
+        if *address != PadAddress::Virtual {
+            return Err(Failure::Unusable("--hand plays the virtual pad: add --pad virtual".into()));
+        }
+        practising::open(device, hand).map(Some)
     }
 }
 
 impl OpenedDisplays {
     #[cfg(feature = "dashboard")]
-    fn with_page(
-        self,
-        memory: &str,
-        sender: RequestSender,
-        selection: Arc<Mutex<ProfileSelection>>,
-        output: OutputChoice,
-    ) -> Result<Self, Failure> {
-        let (page, observer) = Page::open(memory, sender, selection, output)?;
+    fn with_page(self, memory: &str, sender: RequestSender, shelf: Shelf) -> Result<Self, Failure> {
+        let (page, observer) = Page::open(memory, sender, shelf)?;
         let (observer, url, timing) = (Some(observer), Some(page.url()), Some(Timing::default()));
         Ok(Self { page: Some(page), observer, url, timing, ..self })
     }
@@ -104,8 +131,9 @@ impl OpenedDisplays {
         Self { tray: Some((profiles, sender)), ..self }
     }
 
-    /// The same pad; its reads are timed for the page.
-    pub(super) fn pad(&self, pad: OpenedPad) -> OpenedPad {
+    /// The same pad, or the one that a practice hand touches; its reads are timed for the page.
+    pub(super) fn pad(&mut self, pad: OpenedPad) -> OpenedPad {
+        let pad = self.practised.take().unwrap_or(pad);
         match &self.timing {
             Some(timing) => timing.pad(pad),
             None => pad,

@@ -11,7 +11,8 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::devices::{ListedDevice, input_devices};
-use super::{ctl, left_keys, runtime};
+use super::runtime::BridgeName;
+use super::{ctl, left_keys};
 use crate::cli::failure::{Failure, if_read};
 use crate::cli::printing::written::{print_json, printable, stdout};
 use tactpad::bridge::control::ask;
@@ -88,19 +89,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.udev_rules {
         return Ok(stdout().write_all(RULES.as_bytes())?);
     }
-    let report = examine();
+    let report = examine(None);
     let printed = if arguments.json { print_json(&report) } else { print(&report).map_err(Failure::from) };
     if_read(printed)?;
     if report.ok { Ok(()) } else { Err(Failure::Failed("something stands in the way".into())) }
 }
 
-/// Looks at this machine.
-pub(super) fn examine() -> DoctorReport {
+/// Looks at this machine, and at the bridge of this name.
+pub(super) fn examine(name: Option<&BridgeName>) -> DoctorReport {
     let root = Path::new("/");
     let mut checks = vec![check_uinput(), check_rules(root)];
     checks.extend(check_pads(&pads::attached()));
     checks.extend(check_input_devices(&input_devices()));
-    let bridge = match runtime::socket_path(None) {
+    let bridge = match ctl::reached(name) {
         Ok(path) => ask(&path, "status"),
         Err(failure) => Err(io::Error::new(io::ErrorKind::PermissionDenied, failure.sentence())),
     };
@@ -110,7 +111,7 @@ pub(super) fn examine() -> DoctorReport {
     checks.push(check_joydev(root));
     checks.extend(check_sdl(|name| env::var(name).ok()));
     checks.extend(check_session(|name| env::var(name).ok()));
-    checks.push(check_bridge(&bridge));
+    checks.push(check_bridge(&bridge, name));
     checks.extend(left_keys::found().iter().map(check_left_down));
     DoctorReport { ok: checks.iter().all(|check| check.finding != Finding::Bad), checks }
 }
@@ -198,7 +199,10 @@ fn check_rules(root: &Path) -> Check {
         .collect();
     ours.sort();
     match ours.first() {
-        None => Check::note(name, format!("none are installed; to play without root: {}", install_rules())),
+        None => Check {
+            mend: Some(install_rules()),
+            ..Check::note(name, "none are installed; this lets you play without root")
+        },
         Some(file) if number(file).is_none_or(|number| number >= SEAT_NUMBER) => Check::bad(
             name,
             format!("{file} comes after {SEAT_NUMBER}-seat-late.rules, so its uaccess tags have no effect"),
@@ -214,7 +218,8 @@ fn number(file: &str) -> Option<u32> {
 
 fn check_pads(pads: &[FoundPad]) -> Vec<Check> {
     if pads.is_empty() {
-        return vec![Check::note("pad", "none is attached; play without one: tactpad demo")];
+        let mend = Some("tactpad demo".into());
+        return vec![Check { mend, ..Check::note("pad", "none is attached; this plays without one") }];
     }
     let check = |pad: &FoundPad| {
         let path = pad.path.display();
@@ -309,7 +314,8 @@ fn check_joydev(root: &Path) -> Check {
     if root.join("sys/module/joydev").exists() || root.join("dev/input/js0").exists() {
         Check::good(name, "joydev is there, through which Chromium reads gamepads")
     } else {
-        Check::note(name, "joydev is not loaded; Chromium reads gamepads through it: sudo modprobe joydev")
+        let mend = Some("sudo modprobe joydev".into());
+        Check { mend, ..Check::note(name, "joydev is not loaded; Chromium reads gamepads through it") }
     }
 }
 
@@ -356,9 +362,15 @@ fn own_nodes(status: &str) -> Vec<String> {
     words.filter_map(|word| word.strip_prefix("/dev/input/")).map(str::to_owned).collect()
 }
 
-fn check_bridge(answer: &io::Result<String>) -> Check {
+fn check_bridge(answer: &io::Result<String>, name: Option<&BridgeName>) -> Check {
     match answer {
-        Ok(status) => Check::note("bridge", bridge_message(status)),
+        Ok(status) => {
+            let name = name.map(|name| format!(" --name {name}")).unwrap_or_default();
+            Check {
+                mend: Some(format!("tactpad ctl status{name}")),
+                ..Check::good("bridge", bridge_message(status))
+            }
+        }
         Err(error) if error.kind() == io::ErrorKind::TimedOut => Check::note(
             "bridge",
             "one is there and does not answer: if it was stopped, continue it with `fg`",
@@ -366,7 +378,7 @@ fn check_bridge(answer: &io::Result<String>) -> Check {
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
             Check::note("bridge", format!("none can be asked: {error}"))
         }
-        Err(_) => Check::note("bridge", "none is running"),
+        Err(_) => Check { mend: Some("tactpad run".into()), ..Check::note("bridge", "none is running") },
     }
 }
 
@@ -385,7 +397,7 @@ fn bridge_message(status: &str) -> String {
     let text = |key: &str| status.get(key).and_then(Value::as_str).unwrap_or("unknown");
     let warning = ctl::warning(&status).map(|warning| format!(" ({warning})")).unwrap_or_default();
     let (profile, decoder) = (text("profile"), text("decoder"));
-    format!("one is running, profile {profile}, decoder {decoder}{warning}: tactpad ctl status")
+    format!("one is running, profile {profile}, decoder {decoder}{warning}")
 }
 
 #[cfg(test)]

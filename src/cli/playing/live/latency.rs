@@ -95,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         decoder,
         profile,
         sink,
-        requests: requests(None, audience)?,
+        requests: requests()?,
         host: Box::new(host),
         record: Some(timing.record()),
         observers: Vec::new(),

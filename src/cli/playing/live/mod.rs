@@ -30,6 +30,8 @@ mod page;
 #[cfg(feature = "dashboard")]
 mod page_memory;
 mod playing;
+#[cfg(feature = "dashboard")]
+mod practising;
 mod profile_reader;
 mod profile_selection;
 pub(super) mod record;

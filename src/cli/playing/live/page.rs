@@ -5,7 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::Value;
 
+use super::practising::Practising;
 use super::profile_selection::ProfileSelection;
+use super::runtime::BridgeName;
 use super::{calibrated, doctor, page_memory, reported};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
@@ -18,6 +20,7 @@ use tactpad::dashboard::host::{
     DashboardHost, KeptDecoder, Overwrite, ProfileEntry, ReportEntry, SaveError, SavedProfile, SessionStore,
     StoredProfile,
 };
+use tactpad::dashboard::practice::Wish;
 use tactpad::dashboard::server::Dashboard;
 use tactpad::lab::play::guide::Guide;
 use tactpad::pipeline::capture::head::Head;
@@ -37,8 +40,7 @@ impl Page {
     pub(super) fn open(
         memory: &str,
         sender: RequestSender,
-        selection: Arc<Mutex<ProfileSelection>>,
-        output: OutputChoice,
+        shelf: Shelf,
     ) -> Result<(Self, Observer), Failure> {
         let earlier = page_memory::addresses(memory);
         let (dashboard, observer) = Dashboard::open(&earlier, page_memory::key()?).map_err(|error| {
@@ -50,7 +52,7 @@ impl Page {
         if let Err(failure) = page_memory::keep(memory, dashboard.address(), &earlier) {
             say(failure.sentence());
         }
-        Ok((Self { dashboard, sender, shelf: Arc::new(Shelf { selection, output }) }, observer))
+        Ok((Self { dashboard, sender, shelf: Arc::new(shelf) }, observer))
     }
 
     /// Where it is.
@@ -65,12 +67,34 @@ impl Page {
 }
 
 /// Profiles, the doctor and reports.
-struct Shelf {
+pub(super) struct Shelf {
+    /// The name by which `tactpad ctl` reaches the bridge.
+    reached: Option<BridgeName>,
     selection: Arc<Mutex<ProfileSelection>>,
     output: OutputChoice,
+    /// The practice hand, if one plays.
+    hand: Mutex<Option<Practising>>,
+}
+
+impl Shelf {
+    /// Of the bridge that `tactpad ctl` reaches by this name, if it has one.
+    pub(super) const fn new(
+        reached: Option<BridgeName>,
+        selection: Arc<Mutex<ProfileSelection>>,
+        output: OutputChoice,
+        hand: Option<Practising>,
+    ) -> Self {
+        Self { reached, selection, output, hand: Mutex::new(hand) }
+    }
 }
 
 impl DashboardHost for Shelf {
+    fn practise(&self, wish: Wish) {
+        if let Some(hand) = &mut *self.hand.lock().unwrap_or_else(PoisonError::into_inner) {
+            hand.obey(wish);
+        }
+    }
+
     fn entries(&self) -> Vec<ProfileEntry> {
         profile::entries()
     }
@@ -124,7 +148,7 @@ impl DashboardHost for Shelf {
     }
 
     fn doctor(&self) -> Value {
-        serde_json::to_value(doctor::examine()).unwrap_or_default()
+        serde_json::to_value(doctor::examine(self.reached.as_ref())).unwrap_or_default()
     }
 
     fn reports(&self) -> Vec<ReportEntry> {

@@ -1,12 +1,13 @@
 //! Shared parts of the live verbs: opening the pad, messages to people, and the end of a run.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::described::DescribedPad;
 use super::profile_reader::ProfileReader;
 use super::profile_selection::ProfileSelection;
+use super::runtime::{self, BridgeName};
 use crate::cli::failure::Failure;
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
@@ -201,21 +202,32 @@ impl Audience {
     }
 }
 
-/// Requests by signals and, where `socket` is given, through it. A second bridge plays without one.
-pub(super) fn requests(
-    socket: Option<Result<PathBuf, Failure>>,
-    audience: Audience,
-) -> Result<Requests, Failure> {
+/// Requests by signals alone.
+pub(super) fn requests() -> Result<Requests, Failure> {
     let mut requests = Requests::new()?;
     requests.catch_signals()?;
-    let listens = socket.map_or(Ok(()), |path| {
-        let path = path.map_err(Failure::sentence)?;
-        requests.listen(&path).map_err(|error| format!("{} ({})", path.display(), reason(&error)))
-    });
-    if let Err(why) = listens {
-        audience.tell(&format!("`tactpad ctl` does not reach this bridge: {why}"));
-    }
     Ok(requests)
+}
+
+/// Requests by signals and through a socket, of the first of these names that no other bridge has; and that name. Without a socket the bridge plays, too.
+pub(super) fn requests_at(
+    names: impl Iterator<Item = Option<BridgeName>>,
+    audience: Audience,
+) -> Result<(Requests, Option<BridgeName>), Failure> {
+    let mut requests = requests()?;
+    let mut why = String::new();
+    for name in names {
+        let listens = runtime::socket_path(name.as_ref()).map_err(Failure::sentence).and_then(|path| {
+            requests.listen(&path).map_err(|error| format!("{} ({})", path.display(), reason(&error)))
+        });
+        match listens {
+            Ok(()) => return Ok((requests, name)),
+            Err(error) if why.is_empty() => why = error,
+            Err(_) => {}
+        }
+    }
+    audience.tell(&format!("`tactpad ctl` does not reach this bridge: {why}"));
+    Ok((requests, None))
 }
 
 /// A duration as the bridge has it.

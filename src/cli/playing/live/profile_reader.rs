@@ -57,7 +57,8 @@ fn read(
     let (requested, read) = match request {
         ProfileRequest::Next => {
             let (name, read) = profile::next(&before.name, output).ok_or(
-                "there is no other profile from which a press leads on: add one with bridge = \"next-profile\"",
+                "no other profile has a press that leads on, so nobody would come back from it by the pad: `tactpad ctl profile NAME` goes to any of \
+                 `tactpad profile list`; to go on by a press, `tactpad profile new NAME` and give a button of it out = { bridge = \"next-profile\" }",
             )?;
             (before.requested(Some(&name)), (read, String::new()))
         }

@@ -7,15 +7,16 @@ use std::time::Duration;
 
 use clap::Args;
 
+use super::chosen;
 use super::described::{DescribedPad, SourceOption};
 use super::files::{self, Files};
 use super::newest::Newest;
 use super::output::Output;
 use super::playing::{
-    Audience, TerminalHost, WaitOption, create_capture, microseconds, open_pad, patience, play, requests,
+    Audience, TerminalHost, WaitOption, create_capture, microseconds, open_pad, patience, play, requests_at,
 };
+use super::runtime::BridgeName;
 use super::wired::WiringOption;
-use super::{chosen, runtime};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;
@@ -108,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         decoder,
         profile,
         sink,
-        requests: requests(Some(runtime::socket_path(None)), audience)?,
+        requests: requests_at([None].into_iter().chain(BridgeName::numbers()), audience)?.0,
         host: Box::new(host),
         record: Some(Box::new(capture)),
         observers: Vec::new(),

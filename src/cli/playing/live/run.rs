@@ -12,7 +12,9 @@ use super::follower;
 use super::keeping::{KeepPlay, PlayKeeping};
 use super::newest::Newest;
 use super::output::Output;
-use super::playing::{Audience, TerminalHost, WaitOption, microseconds, open_pad, patience, play, requests};
+use super::playing::{
+    Audience, TerminalHost, WaitOption, microseconds, open_pad, patience, play, requests_at,
+};
 use super::profile_selection;
 use super::runtime::BridgeName;
 use super::screen::Screen;
@@ -96,7 +98,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), patience)?;
     let opened = opened.with_wiring(arguments.wired.wiring).with_faults(arguments.faults)?;
     let name = &profile.profile().name;
-    let title = format!("{} → {} → {name} → {}", arguments.pad, decoder.name, sink.describe());
+    let (requests, reached) = match &arguments.name {
+        Some(name) => requests_at([Some(name.clone())].into_iter(), audience)?,
+        None => requests_at([None].into_iter().chain(BridgeName::numbers()), audience)?,
+    };
+    let second = reached.as_ref().filter(|_| arguments.name.is_none());
+    let second = second.map(|name| format!(" (tactpad ctl --name {name})")).unwrap_or_default();
+    let title = format!("{} → {} → {name} → {}{second}", arguments.pad, decoder.name, sink.describe());
     let title = printable(&title);
     let prints = *output == Output::Stdout || (missing.is_some() && !is_shown);
     if let Some(missing) = missing {
@@ -106,9 +114,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(leave) = described.as_ref().and_then(DescribedPad::leave) {
         audience.tell(leave);
     }
-    let requests = requests(Some(runtime::socket_path(arguments.name.as_ref())), audience)?;
-    let memory = runtime::page_memory(arguments.name.as_ref());
-    let mut prepared = arguments.shown.prepare(&memory, &requests, &selection, output.choice())?;
+    let memory = runtime::page_memory(reached.as_ref().or(arguments.name.as_ref()));
+    let mut prepared = arguments.shown.prepare(
+        &memory,
+        reached.as_ref(),
+        &requests,
+        &selection,
+        output.choice(),
+        (pad, &arguments.device),
+    )?;
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));
     }

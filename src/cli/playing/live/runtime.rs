@@ -1,6 +1,7 @@
 //! The folder for what lives as long as a bridge does: its control socket, and what it holds on an X server.
 
 use std::env;
+use std::fmt;
 use std::fs::{self, DirBuilder};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
@@ -22,6 +23,38 @@ impl FromStr for BridgeName {
         let is_name = (1..=32).contains(&text.len()) && text.chars().all(is_plain);
         is_name.then(|| Self(text.to_owned())).ok_or("take 1 to 32 letters, digits, - and _")
     }
+}
+
+/// So many bridges of one user are told apart by a number without being named.
+const NUMBERED: usize = 9;
+
+impl BridgeName {
+    /// Names for bridges that were given none, after the first: 2, 3 and so on.
+    pub(super) fn numbers() -> impl Iterator<Item = Option<Self>> {
+        (2..=NUMBERED).map(|number| Some(Self(number.to_string())))
+    }
+
+    /// Names for demos: demo, demo-2 and so on.
+    pub(super) fn of_demos() -> impl Iterator<Item = Option<Self>> {
+        let numbered = (2..=NUMBERED).map(|number| Some(Self(format!("demo-{number}"))));
+        [Some(Self("demo".to_owned()))].into_iter().chain(numbered)
+    }
+}
+
+impl fmt::Display for BridgeName {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        to.write_str(&self.0)
+    }
+}
+
+/// Names of the bridges that may run; those that were killed leave theirs, too.
+pub(super) fn named() -> Result<Vec<BridgeName>, Failure> {
+    let files = fs::read_dir(folder()?).into_iter().flatten().flatten();
+    let name = |file: String| file.strip_prefix("tactpad-")?.strip_suffix(".sock")?.parse().ok();
+    let mut names: Vec<BridgeName> =
+        files.filter_map(|entry| name(entry.file_name().into_string().ok()?)).collect();
+    names.sort_by(|one, other| one.0.cmp(&other.0));
+    Ok(names)
 }
 
 /// Where a bridge listens, of this name if it has one.

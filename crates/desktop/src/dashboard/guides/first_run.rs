@@ -3,6 +3,7 @@
 use super::guide::{
     GuideContext, GuideState, GuideStatus, NO_ACTION, PageGuide, PageStep, StepAction, StepState,
 };
+use crate::dashboard::practice::{Level, PressWish, Wish};
 use tactpad_bridge::request::Request;
 use tactpad_bridge::state::State;
 
@@ -26,6 +27,10 @@ const STEPS: [(&str, &str, &str); 4] = [
     ),
     ("try", "Press it", "Press the pad three times with one finger, and lift the finger in between."),
 ];
+
+/// What a hand does to try the pad.
+const PRESS: PressWish =
+    PressWish { at_mm: [0.0; 2], push: [0.0; 2], level: Level::Usual, is_long: false, is_double: false };
 
 /// The guide.
 #[derive(Default)]
@@ -77,7 +82,11 @@ impl PageGuide for FirstRun {
             return;
         }
         let contacts = status.health.pipeline.contacts;
+        let (is_first, before) = (self.touches_before.is_none(), self.touches);
         self.touches = contacts - *self.touches_before.get_or_insert(contacts);
+        if is_first || self.touches != before {
+            context.host.practise(if self.touches < TOUCHES { Wish::Press(PRESS) } else { Wish::Rest });
+        }
         if self.touches >= TOUCHES {
             (self.state, self.done) = (GuideState::Done, STEPS.len());
         }

@@ -1,18 +1,20 @@
-//! The force range: half a minute of presses, light and then hard, and a profile whose forces suit them.
+//! The force range: light and hard presses in a drawn order, and a profile whose forces suit them.
 
-use super::guide::{GuideContext, GuideResult, GuideStatus, PageGuide, PageStep, Proposal, StepState};
+use super::asking::CueTarget;
+use super::guide::{GuideContext, GuideResult, GuideStatus, PageGuide, Proposal};
+use super::pieces::Pieces;
 use super::recording::{NO_NAME, Recording};
-use tactpad_core::counted::counted;
+use crate::dashboard::practice::{Level, PressWish, Wish};
+use tactpad_bridge::request::Request;
 use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_lab::tuning::fitting::Fitted;
 use tactpad_lab::tuning::force_range::fit::{ForceRangeError, fit};
 use tactpad_lab::tuning::force_range::peaks::Peaks;
 use tactpad_lab::tuning::force_range::range::{PRESSES_MIN, Range};
-use tactpad_lab::tuning::trace::Trace;
 use tactpad_lab::tuning::words;
 
-/// Each kind of press is recorded so long.
-const KIND_US: u64 = 15_000_000;
+/// Each kind of press is asked for so often.
+const REPEATS: usize = 8;
 
 /// The guide.
 #[derive(Default)]
@@ -20,9 +22,25 @@ pub(super) struct ForceRange {
     recording: Recording,
     /// The profile that is fitted: its name and its text.
     profile: (String, String),
-    /// How many touches there were at the begin, and how many there are since.
-    touches_before: u64,
-    touches: u64,
+}
+
+/// The kinds of presses: light ones, then hard ones.
+pub(super) fn kinds() -> Vec<CueTarget> {
+    let kind = |word: &str, cue: &str, level| CueTarget {
+        word: word.into(),
+        cue: cue.into(),
+        wish: Wish::Press(PressWish {
+            at_mm: [0.0; 2],
+            push: [0.0; 2],
+            level,
+            is_long: false,
+            is_double: false,
+        }),
+    };
+    vec![
+        kind("light", "press in the middle, as lightly as feels sure", Level::Light),
+        kind("hard", "press in the middle, as hard as is comfortable", Level::Hard),
+    ]
 }
 
 impl PageGuide for ForceRange {
@@ -32,62 +50,57 @@ impl PageGuide for ForceRange {
 
     fn start(&mut self, context: &GuideContext<'_>) -> Result<(), String> {
         let profile = (context.profile)().ok_or(NO_NAME)?;
-        let touches_before = context.status.health.pipeline.contacts;
-        *self = Self { recording: Recording::begin(context), profile, touches_before, touches: 0 };
+        *self = Self { recording: Recording::begin(context, kinds(), REPEATS)?, profile };
         Ok(())
     }
 
-    fn stop(&mut self, _scene: &GuideContext<'_>) {
+    fn stop(&mut self, context: &GuideContext<'_>) {
+        context.host.practise(Wish::Rest);
         *self = Self::default();
     }
 
     fn update(&mut self, context: &GuideContext<'_>) {
-        let (name, text) = self.profile.clone();
-        if self.recording.for_us().is_some() {
-            self.touches = context.status.health.pipeline.contacts.saturating_sub(self.touches_before);
-        }
-        self.recording.go_on(context, 2 * KIND_US, move |trace| fitted(&name, &text, trace));
+        let (name, text) = &self.profile;
+        let (name, text) = (name.clone(), text.clone());
+        self.recording.go_on(context, move |pieces| fitted(&name, &text, pieces));
+    }
+
+    fn act(
+        &mut self,
+        action: &str,
+        _number: Option<f64>,
+        context: &GuideContext<'_>,
+    ) -> Result<Option<Request>, String> {
+        self.recording.act(action, context).map(|()| None)
     }
 
     fn status(&self) -> GuideStatus {
-        let recorded_us = self.recording.for_us();
-        let part = recorded_us.map(|us| us as f64 / KIND_US as f64);
-        let steps = [
-            (
-                "light",
-                "Light presses",
-                "Press again and again as lightly as feels sure, and lift the finger after each press.",
-            ),
-            ("hard", "Hard presses", "And now again and again as hard as is comfortable."),
-        ];
-        let kinds = (0..).zip(steps).map(|(index, (id, title, text))| {
-            let done = part.map(|part| part - f64::from(index));
-            let state = self.recording.step(done);
-            PageStep {
-                state,
-                detail: (state == StepState::Doing)
-                    .then(|| format!("{} so far", counted(self.touches, "press"))),
-                progress: done.filter(|_| state == StepState::Doing),
-                ..PageStep::to_do(id, title, text)
-            }
-        });
+        let text = "Light and hard presses are asked for in no order. Take your time: each waits until you have pressed and lifted the finger.";
         GuideStatus {
             id: self.id(),
             title: "Force range",
-            about: "Half a minute of presses. The forces of the profile in play are then fitted to your hand; you see them in the editor before \
-                    anything is saved.",
+            about: "Some light and some hard presses, at your own pace. The forces of the profile in play are then fitted to your hand; you see \
+                    them in the editor before anything is saved.",
             state: self.recording.progress(),
-            steps: kinds.chain([self.recording.working()]).collect(),
+            steps: vec![
+                self.recording.asking("presses", "Press lightly and hard", text),
+                self.recording.working(),
+            ],
             result: self.recording.outcome(),
         }
     }
 }
 
 /// The profile with the forces of a recording's presses, or why it has none.
-fn fitted(name: &str, text: &str, trace: &Trace) -> Result<GuideResult, String> {
+pub(super) fn fitted(name: &str, text: &str, pieces: &Pieces) -> Result<GuideResult, String> {
     let profile =
         check::read(text, OutputChoice::AsWritten).0.ok_or("the profile has errors: mend it first")?;
-    let peaks = Peaks::of(trace);
+    let presses = pieces.presses();
+    let of_kind = |kind: usize| {
+        let own = presses.iter().filter(|(target, press)| *target == kind && press.length_s > 0.0);
+        own.map(|(_, press)| press.force_n[2]).collect()
+    };
+    let peaks = Peaks { light_n: of_kind(0), hard_n: of_kind(1) };
     let range = Range::of(&peaks).ok_or_else(|| {
         format!(
             "There were {} light presses and {} hard ones, and {PRESSES_MIN} of each are needed: begin anew.",

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::dashboard::call_subscribers::TimedCall;
 use crate::dashboard::host::DashboardHost;
+use crate::dashboard::practice::{PressWish, Wish};
 use crate::dashboard::replay_buffer::ReplayBuffer;
 use crate::dashboard::shadow::ConnectedPad;
 use tactpad_bridge::request::{Request, RequestSender};
@@ -109,6 +110,8 @@ pub(super) struct PageStep {
     pub(super) detail: Option<String>,
     /// The instruction at this very moment; it is read out as soon as it changes.
     pub(super) cue: Option<String>,
+    /// Where that is to be done; it is lit on the plate.
+    pub(super) target: Option<Target>,
     /// How much of it is done, from 0 to 1.
     pub(super) progress: Option<f64>,
     pub(super) actions: Vec<StepAction>,
@@ -126,9 +129,28 @@ impl PageStep {
             state: StepState::Todo,
             detail: None,
             cue: None,
+            target: None,
             progress: None,
             actions,
             links,
+        }
+    }
+}
+
+/// A place of the plate, and the direction along it in which it is to be pushed there.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Target {
+    at_mm: [f32; 2],
+    push: [f32; 2],
+}
+
+impl Target {
+    /// Where a wish is to be done; nowhere if the pad is to be left alone.
+    pub(super) fn of(wish: Wish) -> Option<Self> {
+        match wish {
+            Wish::Press(PressWish { at_mm, push, .. }) => Some(Self { at_mm, push }),
+            Wish::Lay { mark_mm, .. } => Some(Self { at_mm: mark_mm.map(|mm| mm as f32), push: [0.0; 2] }),
+            Wish::Rest | Wish::Anywhere | Wish::TakeAway => None,
         }
     }
 }

@@ -1,9 +1,12 @@
 //! Guides: lists of steps with a state, that lead people through something. The page shows them and knows none by itself.
 
+mod asking;
 mod at_home;
 mod cues;
 mod first_run;
+mod followed;
 mod force_range;
 pub(super) mod guide;
 pub(super) mod list;
+mod pieces;
 mod recording;

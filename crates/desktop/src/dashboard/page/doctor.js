@@ -1,8 +1,8 @@
 // The view "Doctor": what the program found on this machine, and the command that mends each finding.
 
-import { get } from "./api.js";
-import { commandLine } from "./command.js";
-import { button, el, say } from "./dom.js";
+import { get } from "./link/api.js";
+import { commandLine, copyButton } from "./shared/command.js";
+import { button, el, say } from "./shared/dom.js";
 
 const STATES = {
   good: { sign: "✓", word: "good", look: "good" },
@@ -34,5 +34,5 @@ function entry({ name, finding, message, mend }) {
   const { sign, word, look } = STATES[finding] ?? STATES.note;
   return el("li", { class: "card" },
     el("h3", {}, el("span", { class: look, text: `${sign} ${word}` }), ` ${name}`),
-    el("p", { text: message }), mend === null ? null : commandLine(name, mend));
+    el("p", { text: message }), mend === null ? copyButton("Copy what is found", name, `${name}: ${message}`) : commandLine(name, mend));
 }

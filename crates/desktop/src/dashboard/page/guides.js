@@ -1,10 +1,12 @@
 // The view "Guides": step by step, as the program tells them. It knows no guide by itself.
 
-import { announce } from "./announce.js";
-import { get, post, withToken } from "./api.js";
-import { commandLine } from "./command.js";
-import { button, el, number, row, say, scroller, table } from "./dom.js";
-import { NumberField } from "./number_field.js";
+import { announce } from "./shared/announce.js";
+import { get, post, withToken } from "./link/api.js";
+import { commandLine } from "./shared/command.js";
+import { button, el, number, row, say, scroller, svg, table } from "./shared/dom.js";
+import { NumberField } from "./fields/number_field.js";
+import { Plate } from "./picture/plate.js";
+import { cueTone } from "./shared/tones.js";
 
 const STEPS = {
   todo: { sign: "○", word: "to do" },
@@ -35,6 +37,11 @@ export class GuidesView {
     } catch (error) {
       say(this.about, error.message);
     }
+  }
+
+  /** Takes the profile in play, as it is drawn. */
+  setSketch({ sketch }) {
+    this.sketch = sketch;
   }
 
   /** Shows none: whatever ran has ended with its bridge. */
@@ -75,19 +82,22 @@ class GuideCard {
     this.state = el("span", { class: "tag" });
     this.steps = el("ol", { class: "steps" });
     this.actions = el("div", { class: "commands" });
+    this.target = new LitPlate();
     this.result = el("div", { class: "result", hidden: true });
     this.node = el("article", { class: "card guide", "aria-labelledby": `guide-${id}` },
-      el("h3", { id: `guide-${id}`, text: title }), el("p", { text: about }), this.state, this.steps, this.actions, this.result);
+      el("h3", { id: `guide-${id}`, text: title }), el("p", { text: about }), this.state, this.steps, this.target.node, this.actions, this.result);
   }
 
   draw(guide) {
     const shape = JSON.stringify([guide.state, guide.steps.map(({ id, state, actions, links }) => [id, state, actions, links]), guide.result]);
     if (shape !== this.#shape) this.#rebuild(guide, shape);
     guide.steps.forEach((step, index) => this.#feedback(step, this.parts[index]));
+    this.target.draw(this.view.sketch ?? null, guide.steps.find(({ state }) => state === "doing")?.target ?? null);
     this.#speak(guide);
   }
 
   #rebuild(guide, shape) {
+    const focused = document.activeElement?.textContent;
     const inside = this.actions.contains(document.activeElement) || this.steps.contains(document.activeElement);
     this.#shape = shape;
     say(this.state, STATES[guide.state] ?? guide.state);
@@ -98,7 +108,7 @@ class GuideCard {
       ? [button("Stop", () => this.view.act(this.id, "stop"), { class: "main" })]
       : [button(guide.state === "idle" ? "Start" : "Start again", () => this.view.act(this.id, "start"), { class: "main primary" })]));
     this.#showResult(guide.result);
-    if (inside) this.actions.querySelector("button")?.focus();
+    if (inside) ([...this.node.querySelectorAll("button")].find((it) => it.textContent === focused) ?? this.actions.querySelector("button"))?.focus();
   }
 
   #step({ title, text, state, actions, links }) {
@@ -118,7 +128,7 @@ class GuideCard {
 
   /** A button; where the action takes a number, the field stands before it. */
   #action({ do: name, label, number: asked }) {
-    if (asked === null) return button(label, () => this.view.act(this.id, name));
+    if (asked === null) return button(label, () => this.view.act(this.id, name), { class: "main" });
     const { least: min, largest: max } = asked;
     const choose = () => {
       const value = field.read();
@@ -153,6 +163,33 @@ class GuideCard {
     this.#spoken = `${state} ${text}`;
     const changed = this.#spoken !== before && before !== "";
     if (changed && text !== "") announce(text);
+    if (changed && step?.cue) cueTone();
+  }
+}
+
+const LIT_MM = 9;
+const ARROW = "M-6 0H6M2-4L6 0L2 4";
+
+/** The plate on which the place is lit that is to be pressed. */
+class LitPlate {
+  #shape = "";
+
+  constructor() {
+    this.plate = new Plate("Plate with the place that is to be pressed");
+    this.node = el("div", { class: "lit-plate", hidden: true }, this.plate.node);
+  }
+
+  draw(sketch, target) {
+    const shape = JSON.stringify([sketch, target]);
+    if (shape === this.#shape) return;
+    this.#shape = shape;
+    this.node.hidden = target === null;
+    if (target === null) return;
+    this.plate.setSketch(sketch);
+    const { at_mm: [x, y], push: [right, up] } = target;
+    const deg = (Math.atan2(-up, right) * 180) / Math.PI;
+    this.plate.layers.finger.replaceChildren(svg("circle", { class: "lit", cx: x, cy: -y, r: LIT_MM }),
+      ...(right === 0 && up === 0 ? [] : [svg("path", { class: "lit-push", d: ARROW, transform: `translate(${x} ${-y}) rotate(${deg})` })]));
   }
 }
 

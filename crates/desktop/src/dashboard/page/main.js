@@ -1,21 +1,21 @@
 // Starts the page: the way in, settings, views, the live socket, and the notices at the top.
 
-import { announce } from "./announce.js";
-import { setToken, takeToken } from "./api.js";
-import { say } from "./dom.js";
-import { DraftStore, takeAsFragment } from "./draft_store.js";
-import { LiveView } from "./live.js";
-import { fetchKeys, handshake } from "./handshake.js";
-import { ProfileView } from "./editor.js";
+import { announce } from "./shared/announce.js";
+import { setToken, takeToken } from "./link/api.js";
+import { say } from "./shared/dom.js";
+import { DraftStore, takeAsFragment } from "./profile/draft_store.js";
+import { LiveView } from "./live/live.js";
+import { fetchKeys, handshake } from "./link/handshake.js";
+import { ProfileView } from "./profile/editor.js";
 import { GuidesView } from "./guides.js";
 import { ReportsView } from "./reports.js";
 import { DoctorView } from "./doctor.js";
-import { onShow, shown, startRouter } from "./router.js";
-import { Screen } from "./screen.js";
-import { startSettings } from "./settings.js";
-import { Live } from "./socket.js";
-import { Trace } from "./trace.js";
-import { loadWords } from "./words.js";
+import { onShow, shown, startRouter } from "./shared/router.js";
+import { Screen } from "./shared/screen.js";
+import { startSettings } from "./shared/settings.js";
+import { Live } from "./link/socket.js";
+import { Trace } from "./picture/trace.js";
+import { loadWords } from "./shared/words.js";
 
 const NO_WAY_IN = "This page does not find its bridge: open it from the tray, or with `tactpad ctl dashboard`.";
 const LOST = "tactpad has ended, or it stands still. Start it again as you did before: this page goes on by itself, and a draft is kept.";
@@ -41,6 +41,7 @@ function followFrames(views) {
     trace.take(frame.trace);
     trace.forget(frame.t_us);
     views.live.take(frame);
+    views.profile.take(frame);
     screen.ask();
   });
   screen.add(section("live"), () => views.live.draw());
@@ -48,7 +49,10 @@ function followFrames(views) {
 }
 
 function followStatus(views) {
-  live.on("sketch", (message) => views.live.setSketch(message));
+  live.on("sketch", (message) => {
+    views.live.setSketch(message);
+    views.guides.setSketch(message);
+  });
   live.on("guide", ({ guide }) => views.guides.update(guide));
   live.on("status", (message) => {
     views.live.setStatus(message);

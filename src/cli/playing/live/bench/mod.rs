@@ -96,7 +96,7 @@ fn measured(arguments: &Arguments) -> Result<BenchReport, Failure> {
     } else {
         (open_pad(pad, None, &arguments.device, profile.profile(), waits)?, None)
     };
-    let requests = requests(None, Audience::Nobody)?;
+    let requests = requests()?;
     let sender = requests.sender()?;
     let (observer, heard) = observe();
     let (tell, said) = channel();

@@ -211,7 +211,7 @@ struct SessionParts {
 /// Runs the bridge, and the session beside it, until nothing is left to do or somebody stops it.
 fn lead(arguments: &Arguments, parts: SessionParts) -> Result<Guide, Failure> {
     let SessionParts { pad, hands, guide, files, decoder, profile } = parts;
-    let requests = requests(None, Audience::Nobody)?;
+    let requests = requests()?;
     let (observer, heard) = observe();
     let (tell, said) = channel();
     let terminal = TerminalHost::new("super-mario", OutputChoice::AsWritten, Audience::Nobody)?;

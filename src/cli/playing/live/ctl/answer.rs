@@ -20,11 +20,6 @@ pub(super) fn answered(path: &Path, request: &str) -> Result<(String, Value), Fa
     }
 }
 
-/// Whether somebody listens, be it somebody who does not answer.
-pub(super) fn is_there(path: &Path) -> bool {
-    !matches!(ask(path, "status"), Err(error) if is_nobody(error.kind()))
-}
-
 const fn is_nobody(kind: io::ErrorKind) -> bool {
     matches!(kind, io::ErrorKind::ConnectionRefused | io::ErrorKind::NotFound)
 }

@@ -12,6 +12,7 @@ mod place;
 mod program;
 pub(crate) mod sector;
 pub mod sketch;
+mod word_places;
 pub(crate) mod words;
 
 use arrayvec::ArrayVec;

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::place::{Direction, Dpad, Pointer, Zone};
 use super::sector;
+use super::word_places::WordPlaces;
 use super::words::{COMMANDS, DPAD_MODES, FORCES, POINTER_MODES, SIDES, SOURCES, word};
 use super::{
     Action, Button, ButtonPlace, Command, Effect, Mode, Output, Profile, Role, Stick, Trigger, When,
@@ -191,15 +192,16 @@ pub struct EffectLabel {
 impl Sketch {
     /// Of a profile.
     pub fn of(profile: &Profile) -> Self {
+        let mut words = WordPlaces::on(PLATE_MM, profile.centre_mm);
         Self {
             name: profile.name.clone(),
             output: profile.output.name(),
             centre_mm: profile.centre_mm,
             filter_samples: profile.filter_samples,
-            dpad: profile.dpad.as_ref().map(|dpad| DpadSketch::of(dpad, profile)),
-            zones: profile.zones.iter().map(|it| ZoneSketch::of(it, profile.centre_mm)).collect(),
-            pointer: profile.pointer.as_ref().map(|it| PointerRings::of(it, profile.centre_mm)),
-            sticks: profile.sticks.iter().map(|it| StickReach::of(it, profile)).collect(),
+            dpad: profile.dpad.as_ref().map(|dpad| DpadSketch::of(dpad, profile, &mut words)),
+            zones: profile.zones.iter().map(|it| ZoneSketch::of(it, profile.centre_mm, &mut words)).collect(),
+            pointer: profile.pointer.as_ref().map(|it| PointerRings::of(it, profile.centre_mm, &mut words)),
+            sticks: profile.sticks.iter().map(|it| StickReach::of(it, profile, &mut words)).collect(),
             triggers: profile.triggers.iter().map(|it| TriggerForces::of(it, profile)).collect(),
             buttons: (1..)
                 .zip(&profile.buttons)
@@ -212,12 +214,10 @@ impl Sketch {
 
 /// Radius of the plate that profiles count on.
 pub const PLATE_MM: f32 = 30.0;
-/// The word of a direction stands so far from the hand's centre,
+/// The word of a direction stands so far from the hand's centre at best.
 const DIRECTION_MM: f32 = 23.0;
-/// and where directions begin too far out for that, beside the plate.
-const OUTSIDE_MM: f32 = 32.0;
-/// Between up and the diagonal.
-const RING_WORD_DEG: f32 = 60.0;
+/// Between up and the diagonal, and other angles where the word of a ring may stand.
+const RING_WORD_DEG: [f32; 8] = [60.0, 120.0, -60.0, -120.0, 30.0, 150.0, -30.0, -150.0];
 /// The name of a zone stands so far from its inner edge at most, where the words of directions leave room.
 const ZONE_NAME_MM: f32 = 3.5;
 
@@ -227,21 +227,23 @@ pub fn polar(centre_mm: [f32; 2], deg: f32, radius_mm: f32) -> [f32; 2] {
     [centre_mm[0] + radius_mm * cos, centre_mm[1] + radius_mm * sin]
 }
 
-/// The same, so far within the plate that a word has room.
-fn on_plate(centre_mm: [f32; 2], deg: f32, radius_mm: f32) -> [f32; 2] {
-    let [x_mm, y_mm] = polar(centre_mm, deg, radius_mm);
-    let far_mm = libm::hypotf(x_mm, y_mm);
-    let share = if far_mm > PLATE_MM - 5.0 { (PLATE_MM - 5.0) / far_mm } else { 1.0 };
-    [x_mm * share, y_mm * share]
+/// Places in a direction, the one at `best_mm` first, then nearer ones down to `from_mm` and farther ones up to beside the plate.
+fn along(centre_mm: [f32; 2], deg: f32, best_mm: f32, from_mm: f32) -> impl Iterator<Item = [f32; 2]> {
+    let nearer =
+        (1..30).map(move |step| best_mm - step as f32).take_while(move |radius_mm| *radius_mm > from_mm);
+    let farther = (1..40).map(move |step| best_mm + step as f32);
+    [best_mm].into_iter().chain(nearer).chain(farther).map(move |radius_mm| polar(centre_mm, deg, radius_mm))
 }
 
-/// Where the word of a ring stands.
-fn beside_ring(centre_mm: [f32; 2], radius_mm: f32) -> [f32; 2] {
-    on_plate(centre_mm, RING_WORD_DEG, radius_mm - 2.2)
+/// Where the word of a ring may stand: inside of it, else outside.
+fn beside_ring(centre_mm: [f32; 2], radius_mm: f32) -> impl Iterator<Item = [f32; 2]> {
+    let radii_mm = [-2.2, 2.2, -4.4, 4.4].map(|beside_mm| radius_mm + beside_mm);
+    let at = move |radius_mm| RING_WORD_DEG.map(|deg| polar(centre_mm, deg, radius_mm));
+    radii_mm.into_iter().flat_map(at)
 }
 
 impl DpadSketch {
-    fn of(dpad: &Dpad, profile: &Profile) -> Self {
+    fn of(dpad: &Dpad, profile: &Profile, words: &mut WordPlaces) -> Self {
         Self {
             mode: word(&DPAD_MODES, &dpad.mode),
             centre_radius_mm: dpad.centre_radius_mm,
@@ -253,14 +255,19 @@ impl DpadSketch {
             min_force_n: dpad.min_force_n,
             release_force_n: dpad.release_force_n,
             sectors: sector::parts(dpad)
-                .map(|(from_deg, to_deg, held)| SectorOutline::of([from_deg, to_deg], held, profile))
+                .map(|(from_deg, to_deg, held)| SectorOutline::of([from_deg, to_deg], held, profile, words))
                 .collect(),
         }
     }
 }
 
 impl SectorOutline {
-    fn of([from_deg, to_deg]: [f32; 2], held: impl Fn(Direction) -> bool, profile: &Profile) -> Self {
+    fn of(
+        [from_deg, to_deg]: [f32; 2],
+        held: impl Fn(Direction) -> bool,
+        profile: &Profile,
+        words: &mut WordPlaces,
+    ) -> Self {
         let held: Vec<_> = Direction::ALL.into_iter().filter(|direction| held(*direction)).collect();
         let word = match held[..] {
             [] => "keeps the last".into(),
@@ -269,18 +276,15 @@ impl SectorOutline {
         };
         let deg = from_deg + 0.5 * (to_deg - from_deg).rem_euclid(360.0);
         let starts_mm = profile.dpad.as_ref().map_or(0.0, |dpad| dpad.centre_radius_mm);
-        let word_at_mm = if starts_mm > DIRECTION_MM - 2.0 {
-            polar(profile.centre_mm, deg, OUTSIDE_MM)
-        } else {
-            on_plate(profile.centre_mm, deg, DIRECTION_MM)
-        };
+        let places = along(profile.centre_mm, deg, DIRECTION_MM, starts_mm);
+        let word_at_mm = words.place(&word, starts_mm, places);
         let directions = held.into_iter().map(Direction::name).collect();
         Self { from_deg, to_deg, directions, word, word_at_mm }
     }
 }
 
 impl ZoneSketch {
-    fn of(zone: &Zone, centre_mm: [f32; 2]) -> Self {
+    fn of(zone: &Zone, centre_mm: [f32; 2], words: &mut WordPlaces) -> Self {
         let edges = (zone.half_width_deg < 180.0)
             .then_some((zone.middle_deg - zone.half_width_deg, zone.middle_deg + zone.half_width_deg));
         let middle_mm = (zone.inner_radius_mm + zone.outer_radius_mm.min(PLATE_MM - 3.0)) / 2.0;
@@ -292,39 +296,47 @@ impl ZoneSketch {
             None if zone.inner_radius_mm == 0.0 => (90.0, 0.0),
             None => (90.0, middle_mm),
         };
+        let turned = [0.0, 15.0, -15.0, 180.0].into_iter().take(if edges.is_some() { 3 } else { 4 });
+        let places =
+            turned.flat_map(|by_deg| along(centre_mm, deg + by_deg, radius_mm, zone.inner_radius_mm));
         Self {
             name: zone.name.clone(),
             from_deg: edges.map(|(from_deg, _)| from_deg),
             to_deg: edges.map(|(_, to_deg)| to_deg),
             inner_radius_mm: zone.inner_radius_mm,
             outer_radius_mm: zone.outer_radius_mm,
-            name_at_mm: on_plate(centre_mm, deg, radius_mm),
+            name_at_mm: words.place(&zone.name, zone.inner_radius_mm, places),
         }
     }
 }
 
 impl PointerRings {
-    fn of(pointer: &Pointer, centre_mm: [f32; 2]) -> Self {
+    fn of(pointer: &Pointer, centre_mm: [f32; 2], words: &mut WordPlaces) -> Self {
         Self {
             mode: word(&POINTER_MODES, &pointer.mode),
             centre_radius_mm: pointer.centre_radius_mm,
             full_radius_mm: pointer.full_radius_mm,
             min_force_n: pointer.min_force_n,
             release_force_n: pointer.release_force_n,
-            word_at_mm: beside_ring(centre_mm, pointer.full_radius_mm),
+            word_at_mm: words.place("pointer", 0.0, beside_ring(centre_mm, pointer.full_radius_mm)),
         }
     }
 }
 
 impl StickReach {
-    fn of(stick: &Stick, profile: &Profile) -> Self {
+    fn of(stick: &Stick, profile: &Profile, words: &mut WordPlaces) -> Self {
+        let name = named::stick(profile, stick.side);
+        let from = word(&SOURCES, &stick.source);
+        // Newtons are no place.
+        let places = beside_ring(profile.centre_mm, stick.full).take_while(|_| from == "place");
+        let word_at_mm = words.place(&name, 0.0, places);
         Self {
             stick: word(&SIDES, &stick.side),
-            from: word(&SOURCES, &stick.source),
+            from,
             centre: stick.rest,
             full: stick.full,
-            word: named::stick(profile, stick.side),
-            word_at_mm: beside_ring(profile.centre_mm, stick.full),
+            word: name,
+            word_at_mm,
         }
     }
 }
@@ -426,6 +438,7 @@ impl EffectLabel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pipeline::mapping::profile::word_places::WordBox;
     use crate::pipeline::mapping::read::check::{OutputChoice, read};
     use crate::pipeline::mapping::read::shipped;
 
@@ -469,5 +482,45 @@ mod tests {
         );
         assert_eq!(sketch.labels.get("BTN_EAST").map(String::as_str), Some("run and fire"));
         assert!(first.long_press_ms.is_some() && first.double_press_ms.is_none());
+    }
+
+    /// The words of a plate, each with what it fills.
+    fn words(sketch: &Sketch) -> Vec<(&str, WordBox)> {
+        let directions =
+            sketch.dpad.iter().flat_map(|dpad| &dpad.sectors).map(|it| (&*it.word, it.word_at_mm));
+        let zones = sketch.zones.iter().map(|it| (&*it.name, it.name_at_mm));
+        let pointer = sketch.pointer.iter().map(|it| ("pointer", it.word_at_mm));
+        let sticks =
+            sketch.sticks.iter().filter(|it| it.from == "place").map(|it| (&*it.word, it.word_at_mm));
+        let all = directions.chain(zones).chain(pointer).chain(sticks);
+        all.map(|(word, at_mm)| (word, WordBox::of(word, at_mm))).collect()
+    }
+
+    #[test]
+    fn no_word_covers_another_or_stands_where_nothing_counts_whatever_the_radii() {
+        let beside = "[pointer]\ncentre_radius_mm = 3\nfull_radius_mm = FULL\n[[zone]]\nname = \"rim\"\nfrom_deg = 60\nto_deg = 120\ninner_radius_mm = 24\n\
+                      [[button]]\nforce = \"fz\"\npress_n = 2\nzone = \"rim\"\nout = { gamepad = \"BTN_SOUTH\", keyboard = \"KEY_Z\", label = \"jump\" }\n";
+        for mode in ["4way", "8way"] {
+            for (radius_mm, x_mm) in (2..=29).flat_map(|radius_mm| [(radius_mm, 0), (radius_mm, 8)]) {
+                for full_mm in [8, 16, 24, 29] {
+                    let text = format!(
+                        "schema = 1\nname = \"words\"\noutput = \"gamepad\"\ncentre_x_mm = {x_mm}\n[dpad]\nmode = \"{mode}\"\ncentre_radius_mm = {radius_mm}\nradius_hysteresis_mm = 1\n{}",
+                        beside.replace("FULL", &full_mm.to_string())
+                    );
+                    let (profile, errors) = read(&text, OutputChoice::AsWritten);
+                    let sketch = Sketch::of(&profile.unwrap_or_else(|| panic!("{errors:?}")));
+                    let words = words(&sketch);
+                    for (index, (word, it)) in words.iter().enumerate() {
+                        for (other, taken) in &words[..index] {
+                            assert!(it.overlap_mm2(taken) < 1e-3, "{word} covers {other}: {text}");
+                        }
+                    }
+                    for (word, it) in words.iter().take(sketch.dpad.as_ref().unwrap().sectors.len()) {
+                        let [near_mm, _] = it.distances_mm(sketch.centre_mm);
+                        assert!(near_mm >= radius_mm as f32, "{word} stands {near_mm} mm out: {text}");
+                    }
+                }
+            }
+        }
     }
 }

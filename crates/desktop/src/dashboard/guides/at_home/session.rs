@@ -96,6 +96,11 @@ impl Session {
         Position::of(&self.guide, &self.cue)
     }
 
+    /// The step that is to be done.
+    pub(super) const fn step(&self) -> &GuideStep {
+        &self.begun
+    }
+
     /// Whether nothing is left to do.
     pub(super) fn is_done(&self) -> bool {
         *self.guide.step() == GuideStep::Done

@@ -14,13 +14,16 @@ use super::session_state::{SessionState, SharedSessionState};
 use crate::dashboard::call_subscribers::TimedCall;
 use crate::dashboard::guides::guide::{CommandLine, GuideResult, ResultTable};
 use crate::dashboard::host::DashboardHost;
+use crate::dashboard::practice::Wish;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
+use tactpad_core::pad::marks::MARKS_MM;
 use tactpad_core::pipeline::call::{Call, OwnedCall};
 use tactpad_core::time::HostInstant;
-use tactpad_lab::play::guide::Guide;
+use tactpad_lab::play::guide::{Guide, GuideStep};
 use tactpad_lab::play::home::calibrated;
 use tactpad_lab::play::summary::{HEADING, PlatePart, Summary};
+use tactpad_lab::play::words::is_other;
 use tactpad_lab::tangent::SimulatedPad;
 use tactpad_mechanics::field_cache;
 
@@ -85,6 +88,7 @@ impl Worker {
         let (mut guide, head) = guide(self.weight_g)?;
         let kept = self.host.open_session(&self.name, self.is_fresh, &mut guide, &head)?;
         let mut session = Session::begin(guide, kept, self.identity.as_ref())?;
+        self.host.practise(wish(session.step(), self.weight_g));
         self.shared.set(SessionState::Guided(session.position()));
         let went = self.hear(&mut session, pause, calls);
         let settled = session.settle();
@@ -123,7 +127,11 @@ impl Worker {
         if *call == OwnedCall::Plain(Call::Resume) {
             pause.again();
         }
+        let before = session.step().clone();
         if session.take(at, call.as_call())? {
+            if is_other(&before, session.step()) {
+                self.host.practise(wish(session.step(), self.weight_g));
+            }
             self.shared.set(SessionState::Guided(session.position()));
         }
         Ok(())
@@ -131,6 +139,19 @@ impl Worker {
 
     fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Acquire)
+    }
+}
+
+/// What a step asks of a hand.
+fn wish(step: &GuideStep, weight_g: Option<f64>) -> Wish {
+    match step {
+        GuideStep::Rest { .. } | GuideStep::Done => Wish::Rest,
+        GuideStep::Press { .. } => Wish::Anywhere,
+        GuideStep::Put { mark, .. } => {
+            let mark_mm = MARKS_MM.get(*mark).copied().unwrap_or_default();
+            Wish::Lay { mark_mm, weight_g: weight_g.unwrap_or_default() }
+        }
+        GuideStep::TakeAway { .. } => Wish::TakeAway,
     }
 }
 

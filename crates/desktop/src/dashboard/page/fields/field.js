@@ -1,0 +1,145 @@
+// One key of a profile as a field: label, control, explanation, and a reset to what holds without it.
+
+import { captureButton } from "./capture.js";
+import { el, say, set } from "../shared/dom.js";
+import { NumberField } from "./number_field.js";
+import { nameOf, tidy } from "./schema.js";
+import { capital, choiceInWords, choiceWritten, controlsInWords, controlsWritten, pathInWords, settingAt } from "../shared/words.js";
+
+const DEVICES = new Set(["gamepad", "keyboard", "pointer"]);
+let fields = 0;
+
+export class Field {
+  /** @type {object | null} one step back for what is typed or slid without a pause */
+  #gesture = null;
+
+  /**
+   * @param {(string | number)[]} path
+   * @param {{ key: string, kind: string, required: boolean, options: string[] | null, min?: number, max?: number, default?: any, help: string }} about
+   * @param {import("./values.js").Values} values
+   */
+  constructor(path, about, values) {
+    Object.assign(this, { path, about, values, id: `field-${fields++}`, setting: settingAt(path) });
+    this.described = `${this.id}-note ${this.id}-help`;
+    this.control = this.#control();
+    set(this.control, { id: this.id, "data-field": nameOf(path) });
+    this.note = el("span", { class: "field-note quiet", id: `${this.id}-note` });
+    this.back = el("button", { type: "button", class: "back", text: "↺", title: "As usual", "aria-label": `${this.setting.word}: as usual`, onclick: () => this.#unwrite() });
+    const { word, unit } = this.setting;
+    this.node = el("div", { class: `field ${about.kind}` },
+      el("label", { for: this.id }, capital(word), el("code", { class: "code-name", "aria-hidden": "true", text: about.key })),
+      el("div", { class: "field-controls" }, this.control, unit === "" ? null : el("span", { class: "quiet", text: unit, "aria-hidden": "true" }), ...this.#extras(), this.back, this.note, this.number?.range),
+      this.number?.error,
+      el("p", { class: "help", id: `${this.id}-help`, text: about.help }));
+    this.refresh();
+  }
+
+  get #numeric() {
+    return this.about.kind === "number" || this.about.kind === "integer";
+  }
+
+  #control() {
+    const { kind } = this.about;
+    if (kind === "choice") return this.#select();
+    if (this.#numeric) return this.#number().node;
+    const described = { "aria-describedby": this.described };
+    if (kind === "boolean") return el("input", { type: "checkbox", ...described, onchange: (event) => this.#write(event.target.checked) });
+    return el("input", { type: "text", autocomplete: "off", spellcheck: "false", list: this.#list(), ...described, onchange: (event) => this.#write(this.#fromWords(event.target.value.trim())) });
+  }
+
+  #list() {
+    return DEVICES.has(this.about.kind) ? `names-${this.about.kind}` : null;
+  }
+
+  /** How a value reads. */
+  #inWords(value) {
+    if (typeof value === "boolean") return value ? "yes" : "no";
+    if (typeof value === "number") return `${value} ${this.setting.unit}`.trimEnd();
+    return DEVICES.has(this.about.kind) ? controlsInWords(this.about.kind, String(value)) : choiceInWords(this.path, String(value));
+  }
+
+  /** What stands in the file for words; null for none. */
+  #fromWords(words) {
+    if (words === "") return null;
+    return DEVICES.has(this.about.kind) ? controlsWritten(this.about.kind, words) : choiceWritten(this.path, words);
+  }
+
+  #select() {
+    const { required, options, default: fallback } = this.about;
+    const none = required ? [] : [el("option", { value: "", text: fallback === undefined ? "as usual" : `as usual: ${this.#inWords(fallback)}` })];
+    return el("select", { "aria-describedby": this.described, onchange: (event) => this.#write(event.target.value === "" ? null : event.target.value) },
+      ...none, ...options.map((option) => el("option", { value: option, text: this.#inWords(option) })));
+  }
+
+  #number() {
+    const { kind, required } = this.about;
+    const { unit, step } = this.setting;
+    this.number = new NumberField({
+      unit,
+      whole: kind === "integer",
+      step,
+      limits: () => this.values.limits(this.path),
+      blank: required ? "" : ", or ↺ for the usual",
+      start: () => this.values.at(this.path) ?? this.about.min ?? 0,
+      take: (value) => this.#typed(value),
+    }, { "aria-describedby": this.described, onfocusout: () => { this.#gesture = null; } });
+    return this.number;
+  }
+
+  /** What is typed or slid without a pause is one step back. */
+  #typed(value) {
+    this.#gesture ??= {};
+    this.#write(value);
+  }
+
+  #makeSlider() {
+    const { kind, min, max } = this.about;
+    return el("input", { type: "range", min, max, step: kind === "integer" ? 1 : "any", "aria-label": `${pathInWords(this.path)}, slider`,
+      oninput: ({ target }) => this.#typed(Number(target.value)), onblur: () => { this.#gesture = null; }, onkeydown: (event) => this.#slide(event, this.setting.step) });
+  }
+
+  /** Arrow keys step by what suits the key, as the handle does. */
+  #slide(event, step) {
+    const by = { ArrowUp: 1, ArrowDown: -1, ArrowRight: 1, ArrowLeft: -1, PageUp: 10, PageDown: -10 }[event.key];
+    if (by === undefined) return;
+    event.preventDefault();
+    const { min, max } = this.about;
+    this.#typed(tidy(Math.min(Math.max(Number(this.slider.value) + by * step, min), max)));
+  }
+
+  #extras() {
+    const { kind } = this.about;
+    if (kind === "keyboard" || kind === "gamepad") return [captureButton(kind, pathInWords(this.path), (names) => this.#write(names))];
+    if (!this.#numeric || this.setting.unit !== "ms") return [];
+    this.slider = this.#makeSlider();
+    return [this.slider];
+  }
+
+  /** The button goes with what it took away, and the focus stays at the field. */
+  #unwrite() {
+    this.#write(null);
+    this.control.focus();
+  }
+
+  #write(value) {
+    this.values.write(this.path, value, this.#gesture ?? {});
+  }
+
+  /** Shows the draft's value, but not over what is being typed. */
+  refresh() {
+    if (this.values.draft.waitsFor(this.path)) return;
+    const value = this.values.at(this.path);
+    const written = this.values.isWritten(this.path);
+    this.back.hidden = !written || this.about.required;
+    this.node.classList.toggle("unwritten", !written);
+    say(this.note, written || value === undefined ? "" : `as usual: ${this.#inWords(value)}`);
+    if (this.about.kind === "boolean") this.control.checked = value === true;
+    else if (this.#numeric) this.number.show(written ? value : "");
+    else this.#fill(this.control, !written ? "" : this.about.kind === "choice" ? value : this.#inWords(value));
+    if (this.slider !== undefined) this.#fill(this.slider, value ?? this.about.min);
+  }
+
+  #fill(node, value) {
+    if (node.value !== String(value)) node.value = String(value);
+  }
+}

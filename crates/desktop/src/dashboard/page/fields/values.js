@@ -1,0 +1,96 @@
+// Values of a draft as it is in force: what is written, or what takes its place; and how far each may go.
+
+import { near } from "../picture/geometry.js";
+import { tidy } from "./schema.js";
+
+/** What is written at a path of a document. */
+export function written(document, path) {
+  let value = document;
+  for (const part of path) value = value?.[part];
+  return value;
+}
+
+/** The tables of one name, however wrong the text may be. */
+export function tablesOf(document, name) {
+  return Array.isArray(document?.[name]) ? document[name] : [];
+}
+
+/** Values that follow from others when they are not written; the sketch has them. */
+function derived(sketch, path) {
+  const [table, second, third] = path;
+  if (table === "dpad") return { release_force_n: sketch?.dpad?.release_force_n, diagonal_deg: sketch?.dpad?.diagonal_deg }[second];
+  if (table === "button") return { release_n: sketch?.buttons[second]?.release_n, hard_release_n: sketch?.buttons[second]?.hard_release_n }[third];
+  return undefined;
+}
+
+export class Values {
+  /** @param {import("../profile/draft.js").Draft} draft @param {import("./schema.js").Schema} schema */
+  constructor(draft, schema) {
+    this.draft = draft;
+    this.schema = schema;
+  }
+
+  get mirrored() {
+    return this.draft.document?.left_handed === true;
+  }
+
+  /** What is in force at a path. */
+  at(path) {
+    return written(this.draft.document, path) ?? derived(this.draft.sketch, path) ?? this.schema.describe(path).default;
+  }
+
+  isWritten(path) {
+    return written(this.draft.document, path) !== undefined;
+  }
+
+  /** Changes one value. */
+  write(path, value, gesture) {
+    this.draft.change([{ table: path.slice(0, -1), key: path.at(-1), value }], gesture);
+  }
+
+  /** Where a value may lie so that the profile stays valid. @returns {{ min: number, max: number }} */
+  limits(path) {
+    const { min = -1000, max = 1000 } = this.schema.describe(path);
+    const key = path.at(-1);
+    // Not every table that has the one key has the other.
+    const beside = (name) => (this.schema.has([...path.slice(0, -1), name]) ? this.at([...path.slice(0, -1), name]) : NaN);
+    const gap = 0.05;
+    const apart = 0.5;
+    const upper = {
+      release_n: () => beside("press_n") - gap,
+      hard_release_n: () => beside("hard_press_n") - gap,
+      release_force_n: () => beside("min_force_n") - gap,
+      radius_hysteresis_mm: () => (path[0] === "dpad" ? beside("centre_radius_mm") - apart : max),
+      centre_radius_mm: () => (path[0] === "dpad" ? max : beside("full_radius_mm") - apart),
+      inner_radius_mm: () => beside("outer_radius_mm") - 3,
+      from_n: () => beside("full_n") - gap,
+    };
+    const lower = {
+      press_n: () => (this.isWritten([...path.slice(0, -1), "release_n"]) ? beside("release_n") + gap : min),
+      hard_press_n: () => Math.max(beside("press_n"), this.isWritten([...path.slice(0, -1), "hard_release_n"]) ? beside("hard_release_n") : 0) + gap,
+      min_force_n: () => (this.isWritten([...path.slice(0, -1), "release_force_n"]) ? beside("release_force_n") + gap : min),
+      centre_radius_mm: () => (path[0] === "dpad" ? beside("radius_hysteresis_mm") + apart : min),
+      outer_radius_mm: () => beside("inner_radius_mm") + 3,
+      full_radius_mm: () => beside("centre_radius_mm") + apart,
+      full_n: () => beside("from_n") + gap,
+    };
+    const known = (limit, otherwise) => (Number.isFinite(limit) ? tidy(limit) : otherwise);
+    return { min: Math.max(min, known(lower[key]?.(), min)), max: Math.min(max, known(upper[key]?.(), max)) };
+  }
+}
+
+/** Angles and places between the file and the plate as it is played: a left-handed profile is mirrored. */
+export const mirror = {
+  /** An angle of a zone's edge. It is its own inverse. */
+  deg: (mirrored, deg) => (mirrored ? 180 - deg : deg),
+  /** A place to the right, or a turn. It is its own inverse. */
+  sign: (mirrored, value) => (mirrored ? -value : value),
+};
+
+/** The angle of the same direction that lies nearest to `before`, within the limits. */
+export function sameTurn(deg, before, { min, max }) {
+  let turned = near(deg, before);
+  while (turned < min) turned += 360;
+  while (turned > max) turned -= 360;
+  return turned;
+}

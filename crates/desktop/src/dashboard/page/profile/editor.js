@@ -1,0 +1,342 @@
+// The view "Profile": the plate and the forces with handles, the form, the text; all of them edit one draft.
+
+import { announce } from "../shared/announce.js";
+import { get } from "../link/api.js";
+import { button, el, say } from "../shared/dom.js";
+import { Draft } from "./draft.js";
+import { ForceHandles } from "../picture/force_handles.js";
+import { Form } from "../fields/form.js";
+import { Finger, Plate } from "../picture/plate.js";
+import { PlateBinding } from "./plate_binding.js";
+import { PlateHandles } from "../picture/plate_handles.js";
+import { Preview } from "./preview.js";
+import { ProfileHistory } from "./profile_history.js";
+import { Rewind } from "./rewind.js";
+import { askConflict, askDrop, askName, readProfile, writeProfile } from "./saving.js";
+import { Schema } from "../fields/schema.js";
+import { printSheet } from "./sheet.js";
+import { TextPane, plural } from "./text.js";
+import { Values } from "../fields/values.js";
+
+export class ProfileView {
+  #name = null;
+  /** The version of the text that was read: what a save may be written over. */
+  #version = null;
+  #ready = null;
+  /** A draft of a guide that is to be opened when the view comes into sight. */
+  #opening = null;
+  #reading = false;
+  #previewed = false;
+  /** @type {import("./draft_store.js").DraftStore | null} */
+  #draftStore = null;
+  /** A draft that this browser has stored, to be opened first. @type {import("./draft_store.js").StoredDraft | null} */
+  #found = null;
+  #leaving = false;
+  /** What is to be read once the draft was checked. */
+  #told = "";
+
+  constructor(section) {
+    this.section = section;
+    this.draft = new Draft();
+    this.preview = new Preview(this.draft, (sentence) => this.#tell(sentence));
+    this.#makeBar();
+    this.body = el("div");
+    section.append(this.bar, this.body);
+    section.addEventListener("keydown", (event) => this.#shortcut(event));
+    addEventListener("beforeunload", (event) => this.draft.dirty && !this.#leaving && event.preventDefault());
+    this.draft.addEventListener("text", () => this.text?.showText());
+    for (const change of ["text", "typed", "checked"]) this.draft.addEventListener(change, () => this.#storeDraft());
+    this.draft.addEventListener("checked", () => this.#checked());
+    this.draft.addEventListener("failed", ({ detail }) => this.#tell(detail));
+  }
+
+  #makeBar() {
+    this.choice = el("select", { id: "profile-open", class: "main", onchange: () => this.#open(this.choice.value) });
+    this.undo = button("Undo", () => this.draft.move(-1), { id: "undo", class: "main", "aria-keyshortcuts": "Control+Z" });
+    this.redo = button("Redo", () => this.draft.move(1), { id: "redo", class: "main", "aria-keyshortcuts": "Control+Y" });
+    this.save = button("Save", () => this.#save(), { id: "save", class: "main primary", "aria-keyshortcuts": "Control+S" });
+    this.revert = button("Revert", () => this.draft.replace(this.draft.saved), { id: "revert", class: "main" });
+    this.live = el("input", { type: "checkbox", id: "preview", checked: true, onchange: () => this.#allowPreview(this.live.checked) });
+    this.state = el("span", { id: "draft-state" });
+    this.message = el("p", { class: "editor-message", role: "status" });
+    this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
+      el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert,
+      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), button("Print …", () => this.#print(), { id: "print", class: "main" }), el("label", { class: "check main" }, this.live, "Play the draft live"), this.state, this.message));
+  }
+
+  /** Makes what needs the schema, once. */
+  async #prepare() {
+    const schema = new Schema(await get("/api/schema"));
+    this.values = new Values(this.draft, schema);
+    this.plate = new Plate("Plate with the handles of the profile that is edited");
+    this.finger = new Finger(this.plate, "editor-contact");
+    this.plateHandles = new PlateHandles(this.plate, this.values);
+    this.plateBinding = new PlateBinding(this.plate, this.values);
+    this.forceHandles = new ForceHandles(this.values);
+    this.form = new Form(this.values, schema);
+    this.text = new TextPane(this.draft);
+    this.rewind = new Rewind(this.draft);
+    this.profileHistory = new ProfileHistory({
+      draft: (text, sentence) => this.#showDraft(text, sentence),
+      open: (name) => this.#reopen(name),
+      mayDrop: async () => !this.draft.dirty || await askDrop(this.#name) === true,
+    });
+    const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab: arrow keys move it, Page Up and Page Down move it far, Home and End to its limits. Each has a field among the settings." });
+    this.body.replaceChildren(el("div", { class: "editor-grid" },
+      el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node, this.plateHandles.legend, this.plateBinding.node), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node, hint)),
+      el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Settings" }), this.form.node)),
+      el("div", { class: "area-text" }, this.text.node, this.rewind.node, this.profileHistory.node)));
+  }
+
+  /** The view comes into sight. */
+  async show() {
+    try {
+      this.#ready ??= this.#prepare();
+      await this.#ready;
+      const playing = await this.#list();
+      if (this.#found !== null) await this.#openFound();
+      if (this.#opening !== null) await this.#openWaiting();
+      else if (this.#name === null && !this.#reading) await this.#load(playing);
+    } catch (error) {
+      this.#ready = null;
+      this.#tell(error.message);
+    }
+  }
+
+  async #list() {
+    const { profiles, playing } = await get("/api/profiles");
+    this.choice.replaceChildren(...profiles.map(({ name, own }) => el("option", { value: name, text: own ? `${name} (yours)` : name })));
+    this.choice.value = this.#name ?? playing;
+    this.profiles = profiles;
+    return playing;
+  }
+
+  /** Shows the history of the profile that is open. */
+  async #showHistory() {
+    const profile = this.profiles.find(({ name }) => name === this.#name);
+    if (profile !== undefined) await this.profileHistory.show(profile).catch((error) => this.#tell(error.message));
+  }
+
+  #showDraft(text, sentence) {
+    this.#told = sentence;
+    announce(sentence);
+    this.draft.replace(text);
+  }
+
+  /** Opens a profile of this name, or the one in play with null, whatever becomes of the draft; the list is another one. */
+  async #reopen(name) {
+    this.#name = name;
+    const playing = await this.#list();
+    await this.#load(name ?? playing);
+  }
+
+  async #open(name) {
+    if (this.draft.dirty && !(await askDrop(this.#name))) {
+      this.choice.value = this.#name;
+      return;
+    }
+    await this.#load(name).catch((error) => this.#tell(error.message));
+  }
+
+  async #load(name, text = undefined) {
+    this.#reading = true;
+    const profile = await readProfile(name).finally(() => { this.#reading = false; });
+    this.#opened(name, profile.version, profile.text, text);
+    await this.#showHistory();
+  }
+
+  #opened(name, version, saved, text) {
+    this.#name = name;
+    this.#version = version;
+    this.choice.value = name;
+    this.plateHandles.forget();
+    this.forceHandles.forget();
+    this.draft.load(saved, text);
+  }
+
+  /** Opens a draft that a guide has made; nothing else is shown before it. */
+  openDraft(draft) {
+    this.#opening = draft;
+    location.hash = "#profile";
+  }
+
+  async #openWaiting() {
+    const { profile, text } = this.#opening;
+    this.#opening = null;
+    if (this.draft.dirty && !(await askDrop(this.#name))) return;
+    await this.#load(profile, text);
+  }
+
+  /** Takes the store of drafts that are not saved, and the draft that it found. */
+  setDraftStore(store, found) {
+    this.#draftStore = store;
+    this.#found = found;
+    showStored(found);
+  }
+
+  #storeDraft() {
+    if (this.#name === null || this.#reading) return;
+    const { dirty, text } = this.draft;
+    this.#draftStore?.store(dirty ? { profile: this.#name, version: this.#version, text, at_ms: Date.now() } : null);
+  }
+
+  /** Opens the stored draft as it was left. It is not played: it may be why the bridge was ended. */
+  async #openFound() {
+    const { profile, version, text, at_ms } = this.#found;
+    this.#found = null;
+    showStored(null);
+    this.live.checked = false;
+    this.#allowPreview(false);
+    const saved = await readProfile(profile).catch(() => null);
+    this.#opened(profile, version, saved?.text ?? "", text);
+    const changed = saved?.version === version ? "" : " The file was changed meanwhile: Save asks before it writes.";
+    this.#told = `Your draft of ${profile} is here as you left it at ${new Date(at_ms).toLocaleTimeString()}. It is not played before you tick “Play the draft live”; Revert drops it.${changed}`;
+    announce(this.#told);
+    await this.#showHistory();
+  }
+
+  /** The bridge is there again. */
+  again() {
+    if (this.#name === null) return;
+    this.preview.again();
+    this.draft.again();
+  }
+
+  /** There is no bridge. */
+  clear() {
+    this.finger?.draw(null, null, null);
+    this.forceHandles?.forces.draw(null);
+    this.#previewed = false;
+    document.getElementById("preview-notice").replaceChildren();
+  }
+
+  /** The page goes elsewhere by itself: everything is stored, and nobody is asked. */
+  leave() {
+    this.#leaving = true;
+    return this.#draftStore?.flush();
+  }
+
+  #tell(sentence) {
+    say(this.message, sentence);
+  }
+
+  #checked() {
+    const focus = document.activeElement?.closest?.("[data-handle], [data-field]");
+    this.#tell(this.#told);
+    this.#told = "";
+    this.text.showDiagnostics();
+    this.plate.setSketch(this.draft.sketch);
+    this.plateHandles.refresh();
+    this.forceHandles.refresh();
+    this.form.refresh();
+    refocus(focus);
+    this.preview.follow();
+    this.#showState();
+  }
+
+  #showState() {
+    const { dirty, history, valid } = this.draft;
+    this.#offer(this.undo, history.canUndo);
+    this.#offer(this.redo, history.canRedo);
+    this.#offer(this.save, dirty);
+    this.#offer(this.revert, dirty);
+    this.section.classList.toggle("stale", this.draft.stale);
+    say(this.state, `${dirty ? "● not saved" : "✓ saved"}${valid ? "" : ", ✕ has errors"}`);
+  }
+
+  #allowPreview(allowed) {
+    this.preview.enabled = allowed;
+    this.preview.follow();
+  }
+
+  /** A button that has nothing to do keeps the focus, else keys would lead nowhere after its last use. */
+  #offer(button, can) {
+    button.setAttribute("aria-disabled", String(!can));
+  }
+
+  #shortcut(event) {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+    const key = event.key.toLowerCase();
+    const action = { s: () => this.#save(), y: () => this.draft.move(1), z: () => this.draft.move(event.shiftKey ? 1 : -1) }[key];
+    if (action === undefined) return;
+    event.preventDefault();
+    action();
+  }
+
+  async #save() {
+    if (this.#name === null || !this.draft.dirty) return;
+    await this.#write(this.#name, this.#version);
+  }
+
+  async #write(name, version) {
+    const { text } = this.draft;
+    try {
+      const answer = await writeProfile(name, text, version);
+      this.#name = name;
+      this.#version = answer.version;
+      this.draft.markSaved(text);
+      this.#tell(`Saved to ${answer.path}.`);
+      await this.#list();
+      await this.#showHistory();
+    } catch (error) {
+      await this.#notSaved(error, name, version);
+    }
+  }
+
+  async #notSaved(error, name, version) {
+    if (error.status === 422) {
+      const count = error.body.diagnostics.filter(({ severity }) => severity === "error").length;
+      return this.#tell(`Not saved: the text has ${plural(count, "error")}.`);
+    }
+    if (error.status !== 412 || version === null) return this.#tell(`Not saved: ${error.message}`);
+    const answer = await askConflict();
+    if (answer === "theirs") await this.#load(name);
+    if (answer === "overwrite") await this.#write(name, (await readProfile(name)).version);
+  }
+
+  async #print() {
+    await printSheet(this.draft.text).catch((error) => this.#tell(`Not printed: ${error.message}`));
+  }
+
+  async #saveAs() {
+    const name = await askName(`${this.#name}-2`);
+    if (name !== null) await this.#write(name, null);
+  }
+
+  /** Takes a frame, drawn or not. */
+  take(frame) {
+    this.plateBinding?.take(frame);
+  }
+
+  /** Follows the finger. */
+  draw(frame) {
+    if (this.text === undefined || frame === undefined) return;
+    this.finger.draw(frame.contact, frame.uncertainty, null);
+    this.forceHandles.forces.draw(frame.contact);
+  }
+
+  /** Says at the top of every view when a draft is played. */
+  setStatus({ status: { preview } }) {
+    if (preview === this.#previewed) return;
+    this.#previewed = preview;
+    const notice = document.getElementById("preview-notice");
+    const sentence = "The preview is being played, not saved.";
+    notice.replaceChildren(...(preview ? [el("span", { text: `◐ ${sentence}` }), button("Back to the file", () => this.preview.end())] : []));
+    announce(preview ? sentence : "The saved profile is played.");
+  }
+}
+
+/** Says in every view that a draft is kept. */
+function showStored(found) {
+  const notice = document.getElementById("draft-notice");
+  if (found !== null) announce(`A draft of ${found.profile} that was not saved is kept.`);
+  notice.replaceChildren(...(found === null ? [] : [el("span", { text: `● A draft of ${found.profile} that was not saved is kept.` }), " ",
+    el("a", { class: "action", href: "#profile", text: "Open the draft" })]));
+}
+
+/** Gives the focus back to a handle or field that was made anew. */
+function refocus(before) {
+  if (!before || before.isConnected) return;
+  const name = before.dataset.handle === undefined ? `[data-field="${before.dataset.field}"]` : `[data-handle="${before.dataset.handle}"]`;
+  document.querySelector(name)?.focus();
+}

@@ -1,0 +1,145 @@
+// "Bind on the plate": press there, on the pad or in the picture, then the key or the gamepad's button.
+
+import { Capture } from "../fields/capture.js";
+import { seenFrom } from "../picture/geometry.js";
+import { announce } from "../shared/announce.js";
+import { button, el, say, set } from "../shared/dom.js";
+import { controlsInWords } from "../shared/words.js";
+
+const LABEL = "Bind on the plate";
+const WHERE = "Press on the pad, or in the picture, what is to be bound; Escape leaves it.";
+/** What turns on, moves, and leaves is the page's, not the game's. */
+const FREE_KEYS = new Set(["Tab", "Shift"]);
+
+const within = (deg, from_deg, to_deg) => (((deg - from_deg) % 360) + 360) % 360 <= (((to_deg - from_deg) % 360) + 360) % 360;
+
+/** The names of zones, and of directions, that a place lies in. */
+function partsAt(sketch, at) {
+  const { deg, radius_mm } = seenFrom(sketch.centre_mm, at);
+  const zones = sketch.zones.filter(({ from_deg, to_deg, inner_radius_mm, outer_radius_mm }) => (
+    radius_mm >= inner_radius_mm && radius_mm <= outer_radius_mm && (from_deg === null || within(deg, from_deg, to_deg))));
+  const counts = sketch.dpad !== null && radius_mm >= sketch.dpad.centre_radius_mm;
+  const sectors = counts ? sketch.dpad.sectors.filter(({ from_deg, to_deg }) => within(deg, from_deg, to_deg)) : [];
+  return { zones: zones.map(({ name }) => name), sectors };
+}
+
+/** How far a press goes beyond what a button needs: 1 is just enough. */
+function share({ force, press_n }, pressed) {
+  const axis = force.replace("-", "");
+  return (force.startsWith("-") ? -1 : 1) * pressed[`${axis}_n`] / press_n;
+}
+
+const ofButton = ({ number, does }) => does.map(({ role, role_word, word }) => ({
+  name: does.length === 1 ? word : `${role_word} ${word}`, path: (device) => ["button", number - 1, role, device] }));
+
+const ofDirection = (direction) => ({ name: direction, path: (device) => ["dpad", device, direction] });
+
+/**
+ * What can be bound at a place of the picture. With a force it is what this press would do, else all that counts there.
+ * @returns {{ name: string, path: (device: string) => (string | number)[] }[]}
+ */
+export function bindingsAt(sketch, at, pressed = null) {
+  const { zones, sectors } = partsAt(sketch, at);
+  const directions = sectors.flatMap((sector) => sector.directions);
+  const here = sketch.buttons.filter(({ zone }) => zone !== null && (zones.includes(zone) || directions.includes(zone)));
+  const anywhere = sketch.buttons.filter(({ zone }) => zone === null);
+  if (pressed !== null) {
+    const reached = [...here, ...anywhere].map((one) => [share(one, pressed), one]).filter(([of]) => of >= 1);
+    reached.sort(([one], [other]) => other - one);
+    if (reached.length > 0) return ofButton(reached[0][1]);
+  }
+  const own = [...here.flatMap(ofButton), ...directions.map(ofDirection)];
+  return own.length > 0 ? own : anywhere.flatMap(ofButton);
+}
+
+export class PlateBinding {
+  /** What the pad felt most of since it was touched. */
+  #pressed = null;
+  #state = "off";
+
+  /** @param {import("../picture/plate.js").Plate} plate @param {import("../fields/values.js").Values} values */
+  constructor(plate, values) {
+    Object.assign(this, { plate, values });
+    this.start = button(LABEL, () => (this.#state === "off" ? this.#ask() : this.#leave("Left as it is.")), { id: "bind", class: "main", "aria-pressed": "false" });
+    this.said = el("p", { class: "small" });
+    this.choices = el("div", { class: "commands" });
+    this.node = el("div", { class: "binding" }, this.start, this.said, this.choices);
+    plate.node.addEventListener("click", (event) => this.#state === "where" && this.#found(bindingsAt(this.#sketch, plate.at(event))));
+    addEventListener("keydown", (event) => this.#key(event), true);
+  }
+
+  get #sketch() {
+    return this.values.draft.sketch;
+  }
+
+  /** Whoever goes to another view is asked no more. */
+  get #asks() {
+    if (this.#state === "where" && !this.node.checkVisibility()) this.#go("off", "");
+    return this.#state === "where";
+  }
+
+  #go(state, sentence) {
+    this.#state = state;
+    this.#pressed = null;
+    set(this.start, { "aria-pressed": String(state !== "off") });
+    this.plate.node.classList.toggle("asks", state === "where");
+    this.choices.replaceChildren();
+    say(this.said, sentence);
+  }
+
+  #ask() {
+    if (this.#sketch === null) return;
+    this.#go("where", WHERE);
+    announce(WHERE);
+  }
+
+  #leave(sentence) {
+    this.#go("off", sentence);
+    announce(sentence);
+    this.start.focus();
+  }
+
+  /** What the pad types into this page while it is pressed is no answer. */
+  #key(event) {
+    if (!this.#asks || FREE_KEYS.has(event.key)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (event.key === "Escape") this.#leave("Left as it is.");
+  }
+
+  /** Follows the pad, frame by frame: a press is over once nothing is held any more. */
+  take({ trace, contact, held }) {
+    if (!this.#asks) return;
+    for (const [, x_mm, y_mm, fx_n, fy_n, fz_n] of trace.filter((point) => point.length > 1)) {
+      const most = Math.max(fz_n, Math.abs(fx_n), Math.abs(fy_n));
+      if (this.#pressed === null || most > this.#pressed.most) this.#pressed = { x_mm, y_mm, fx_n, fy_n, fz_n, most };
+    }
+    if (contact !== null || this.#pressed === null || held.length > 0) return;
+    this.#found(bindingsAt(this.#sketch, { x: this.#pressed.x_mm, y: -this.#pressed.y_mm }, this.#pressed));
+  }
+
+  #found(bindings) {
+    if (bindings.length === 0) return this.#leave("Nothing is bound there: add a button or directions among the settings.");
+    if (bindings.length === 1) return this.#listen(bindings[0]);
+    this.#go("which", "Which one?");
+    this.choices.replaceChildren(...bindings.map((binding) => button(binding.name, () => this.#listen(binding), { class: "main" })));
+    announce(`Which one? ${bindings.map(({ name }) => name).join(", ")}.`);
+    this.choices.querySelector("button").focus();
+  }
+
+  #listen(binding) {
+    this.#go("key", `${binding.name}: press its key, or its button on a gamepad. Escape leaves it as it is.`);
+    announce(this.said.textContent);
+    this.start.focus();
+    new Capture(this.start, ["keyboard", "gamepad"], (taken) => this.#take(binding, taken));
+  }
+
+  #take({ name, path }, taken) {
+    if (taken === null) return this.#go("off", "Left as it is.");
+    const { device, names } = taken;
+    this.values.write(path(device), names, {});
+    const { output } = this.#sketch;
+    const other = device === output ? "" : ` This profile plays the ${output}: there it stays as it was.`;
+    this.#go("off", `${name} is ${controlsInWords(device, names)} on the ${device} now.${other}`);
+  }
+}

@@ -1,0 +1,72 @@
+// The plain words of controls and settings, which the program tells; names of files stand behind them.
+
+import { get } from "../link/api.js";
+
+let table = { settings: {}, choices: {}, controls: { gamepad: [], keyboard: [], pointer: [] } };
+let asked = false;
+
+/** Asks the program, once. */
+export async function loadWords() {
+  if (!asked) table = await get("/api/words");
+  asked = true;
+}
+
+/** The name of a path among settings: numbers of tables in lists are left out; any kind of press, or any device, is a `*`. */
+function find(from, path) {
+  const keys = path.filter((part) => typeof part === "string");
+  return from[keys.join(".")] ?? from[keys.with(Math.min(1, keys.length - 1), "*").join(".")];
+}
+
+/** The word, unit and arrow-key step of a setting. @param {(string | number)[]} path */
+export function settingAt(path) {
+  return find(table.settings, path) ?? { word: String(path.at(-1)), unit: "", step: 0.05 };
+}
+
+/** "button 1, press force" @param {(string | number)[]} path */
+export function pathInWords(path) {
+  const parts = path.map((part, index) => (typeof part === "number" ? ` ${part + 1}` : `${index === 0 ? "" : ", "}${settingAt(path.slice(0, index + 1)).word}`));
+  return parts.join("");
+}
+
+/** The first letter as a capital, for titles. */
+export const capital = (words) => words[0].toUpperCase() + words.slice(1);
+
+/** The word of what stands for a setting. */
+export function choiceInWords(path, written) {
+  return find(table.choices, path)?.[written] ?? written;
+}
+
+/** What stands in a file for a word of a setting. */
+export function choiceWritten(path, word) {
+  const choices = Object.entries(find(table.choices, path) ?? {});
+  return choices.find(([, known]) => same(known, word))?.[0] ?? word;
+}
+
+const same = (one, other) => one.toLowerCase() === other.toLowerCase();
+
+/** The words of a device's controls, by how bindings write them. @returns {[string, string][]} */
+export const controlsOf = (device) => table.controls[device] ?? [];
+
+/** A binding's controls: names with + between them; a + right behind an axis is its side. */
+function partsOf(written) {
+  const parts = [];
+  for (const part of written.split("+")) {
+    if (part === "" && parts.length > 0) parts.push(`${parts.pop()}+`);
+    else parts.push(part.trim());
+  }
+  return parts;
+}
+
+/** "left Ctrl + C" of "KEY_LEFTCTRL+KEY_C"; a name that is no control's stays. */
+export function controlsInWords(device, written) {
+  const word = (name) => controlsOf(device).find(([known]) => same(known, name) || same(known, `KEY_${name}`))?.[1] ?? name;
+  return partsOf(written).map(word).join(" + ");
+}
+
+/** The binding of "left Ctrl + C"; names of files are taken, too. */
+export function controlsWritten(device, words) {
+  const known = controlsOf(device);
+  const isWritten = partsOf(words).every((name) => known.some(([it]) => same(it, name)));
+  if (isWritten) return words;
+  return words.split("+").map((word) => known.find(([, it]) => same(it, word.trim()))?.[0] ?? word.trim()).join("+");
+}

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::hypothesis::Hypothesis;
-use crate::model::{CommonError, Signature};
+use crate::model::{CommonError, Linearised, Signature};
 use crate::observations::Sample;
 use tactpad_numeric::random::SplitMix64;
 use tactpad_numeric::statistics::rms;
@@ -195,6 +195,20 @@ fn without_the_background_sound_sensors_raise_alarms() {
         }
         assert!(alarms[0] <= 1 && alarms[1] == 4, "{channels} channels: {alarms:?}");
     }
+}
+
+#[test]
+fn a_step_that_leads_up_is_shortened() {
+    let random = &mut SplitMix64::new(52);
+    let mut sensor = Sensor::new(4, contacts(random));
+    let supply = sensor.place_of(Cause::Supply);
+    // From 1 the first step leads to exp 14, and each further one by 1 back.
+    sensor.hypotheses[supply].parameters[0].range = [1e-9, 1e9];
+    let wanted = libm::log(15.0);
+    let measured = sensor.measured(&[(supply, vec![wanted])], 0.01, random);
+    let search = Search::new(&sensor, &measured, &measured);
+    let fit = search.nearly_fitted(&vec![(supply, vec![0.0])], None).unwrap();
+    assert!((fit.applied[0].1[0] - wanted).abs() < 0.02, "{:?} is not {wanted}", fit.applied);
 }
 
 #[test]

@@ -48,7 +48,7 @@ use self::naming::separation::Separation;
 use self::naming::untestable::with_untestable;
 use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
 use self::naming::{not_detected, offsets};
-use self::report::{Diagnosis, Finding, NotTestable, Notice, Residuals, Verdict};
+use self::report::{Diagnosis, Finding, NotTestable, Notice, Proposal, Residuals, Verdict};
 use self::simulation::atlas::{Atlas, attributed};
 use self::simulation::simulated::Simulated;
 use self::validation::ceiling::{ceiling_share, is_all_removed};
@@ -131,7 +131,8 @@ pub fn diagnose(
     diagnosed(table, pad, without, Validation::OnLockedRows)
 }
 
-/// The same causes as those of [`diagnose`], in two thirds of the time: the findings' gain and ceiling on locked rows are absent.
+/// The same causes as those of [`diagnose`], in two thirds of the time: what they gain on locked rows, the ceiling there and the plan of further
+/// measurements are absent.
 ///
 /// # Errors
 /// The table has too little in it to tell causes apart.
@@ -386,7 +387,7 @@ fn summary(
         unnamed_by_channel,
         findings,
         gatekeepers: unsettled(fit).into_iter().collect(),
-        next: proposal(&separation, &open_findings),
+        next: if is_validated { proposal(&separation, &open_findings) } else { Proposal::default() },
     })
 }
 

@@ -13,7 +13,7 @@
 //!
 //! Source: A. C. Atkinson, V. V. Fedorov, Biometrika 62 (1975) 57 (T-optimality).
 
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -80,7 +80,12 @@ pub(crate) struct Separation<'s, 'm> {
     found: &'s Attribution,
     pub(super) experiments: Vec<Experiment>,
     elsewhere: Vec<OnceCell<Option<ExperimentModel>>>,
+    /// What is known of experiments, fitted causes and their rivals.
+    known: RefCell<BTreeMap<(usize, usize, Vec<usize>), Option<Repeats>>>,
 }
+
+/// For each rival, how often an experiment must be made to tell a cause from it; none if it does not.
+type Repeats = Vec<Option<usize>>;
 
 /// The model at the rows of an experiment.
 type ExperimentModel = (Linearised, Vec<CommonError>);
@@ -90,7 +95,7 @@ impl<'s, 'm> Separation<'s, 'm> {
         let worth = |it: &Experiment| it.rows.rows() > 0 || it.by_hand.is_some();
         let experiments: Vec<Experiment> = catalogue(search.observations).into_iter().filter(worth).collect();
         let elsewhere = experiments.iter().map(|_| OnceCell::new()).collect();
-        Self { search, found, experiments, elsewhere }
+        Self { search, found, experiments, elsewhere, known: RefCell::default() }
     }
 
     /// The measurement that separates the fitted cause at this place from its rivals, as a sentence; else one for each rival. None where
@@ -122,10 +127,15 @@ impl<'s, 'm> Separation<'s, 'm> {
         (0..hypotheses.len()).filter(|number| rivals.contains(&hypotheses[*number].label)).collect()
     }
 
-    /// How often an experiment must be made to tell the fitted cause at this place from each rival; none from one that it does not. None at
-    /// all where the model cannot say.
-    pub(super) fn repeats(&self, number: usize, at: usize, rivals: &[usize]) -> Option<Vec<Option<usize>>> {
-        self.both(number)?.repeats(at, rivals)
+    /// How often an experiment must be made to tell the fitted cause at this place from each rival; none where the model cannot say.
+    pub(super) fn repeats(&self, number: usize, at: usize, rivals: &[usize]) -> Option<Repeats> {
+        let asked = (number, at, rivals.to_vec());
+        if let Some(known) = self.known.borrow().get(&asked) {
+            return known.clone();
+        }
+        let found = self.both(number).and_then(|rows| rows.repeats(at, rivals));
+        self.known.borrow_mut().insert(asked, found.clone());
+        found
     }
 
     /// The cheapest measurement that separates it from all of these rivals, if one does. None where the model cannot say.
@@ -202,14 +212,19 @@ impl<'s, 'm> JointRows<'s, 'm> {
         both.map(|(present, further)| CausePair { present, further, precision }).collect()
     }
 
-    /// How often it takes the experiment to tell the cause from each rival; none if it does not.
-    fn repeats(&self, at: usize, rivals: &[usize]) -> Option<Vec<Option<usize>>> {
+    /// How often it takes the experiment to tell the cause from each rival.
+    fn repeats(&self, at: usize, rivals: &[usize]) -> Option<Repeats> {
         let most = if self.experiment.by_hand.is_some() { 1 } else { REPEATS_MAX };
         let discrimination = self.discrimination(at, rivals)?;
+        let freedom = discrimination.cause.len();
+        // Something significant is left of the cause in nine of ten such measurements.
+        let threshold = chi_square::quantile(self.found.critical, freedom);
+        let wanted = chi_square::noncentrality(threshold, freedom, POWER);
         let mut fishers: BTreeMap<usize, Option<Matrix>> = BTreeMap::new();
         let mut is_enough = |repeats: usize, rival: &Range<usize>| {
             let fisher = fishers.entry(repeats).or_insert_with(|| self.fisher(&discrimination, repeats));
-            fisher.as_ref().and_then(|it| self.separates(it, &discrimination, rival)).unwrap_or(false)
+            let left = fisher.as_ref().and_then(|it| discrimination.left(it, rival));
+            left.is_some_and(|left| left >= wanted)
         };
         let of_rival = |rival: &Range<usize>| {
             if is_enough(1, rival) {
@@ -253,20 +268,6 @@ impl<'s, 'm> JointRows<'s, 'm> {
             cause: cause.collect(),
             rivals,
         })
-    }
-
-    /// Whether something significant of the cause is left beside a rival in nine of ten such measurements.
-    fn separates(
-        &self,
-        fisher: &Matrix,
-        discrimination: &Discrimination,
-        rival: &Range<usize>,
-    ) -> Option<bool> {
-        let freedom = discrimination.cause.len();
-        let threshold = chi_square::quantile(self.found.critical, freedom);
-        let wanted = chi_square::noncentrality(threshold, freedom, POWER);
-        let free = discrimination.held.iter().copied().chain(rival.clone()).collect();
-        Some(left(fisher, &discrimination.cause, &discrimination.psi, free)? >= wanted)
     }
 
     /// What the present rows and so many measurements tell of the columns, and what was known of them before.
@@ -316,25 +317,24 @@ impl<'s, 'm> JointRows<'s, 'm> {
             let none = || vec![0.0; weights.len()];
             values.map_or_else(none, |it| it.iter().zip(&weights).map(|(v, weight)| v * weight).collect())
         };
-        let whitened = |values: Option<&Vec<f64>>| -> Vec<f64> {
-            let none = || vec![0.0; system.residual.len()];
-            values.map_or_else(none, |it| system.whitening.whitened(it))
-        };
         let known = |(_, pair): &(usize, &&CausePair)| {
             pair.present[channel].is_some() || pair.further[channel].is_some()
         };
         let known: Vec<(usize, &&CausePair)> = columns.iter().enumerate().filter(known).collect();
-        let of = |column: &dyn Fn(&CausePair) -> Vec<f64>| -> Vec<(usize, Vec<f64>)> {
-            known.iter().map(|(number, pair)| (*number, column(pair))).collect()
-        };
         // What is measured by hand has no rows, and so no functions there.
         let functions = fit.systems.background_at(channel, self.search.model.sizes()[channel], rows);
         let functions: Vec<Vec<f64>> =
             (0..system.background.len()).map(|at| weighted(functions.get(at))).collect();
+        let none = vec![0.0; system.residual.len()];
+        let present = known.iter().map(|(number, pair)| (*number, pair.present[channel].as_ref()));
+        let present: Vec<(usize, &[f64])> =
+            present.map(|(number, values)| (number, values.unwrap_or(&none).as_slice())).collect();
+        let further: Vec<(usize, Vec<f64>)> =
+            known.iter().map(|(number, pair)| (*number, weighted(pair.further[channel].as_ref()))).collect();
         Some(ChannelEquations {
             channel,
-            present: equations(&of(&|pair| whitened(pair.present[channel].as_ref())), &system.background)?,
-            further: equations(&of(&|pair| weighted(pair.further[channel].as_ref())), &functions)?,
+            present: system.about(&present, &none),
+            further: equations(&further, &functions)?,
         })
     }
 }
@@ -347,12 +347,16 @@ fn equations(columns: &[(usize, Vec<f64>)], background: &[Vec<f64>]) -> Option<N
     Some(ChannelSystem::of(&columns, background, &[], &vec![0.0; count], white).ok()?.equations)
 }
 
-/// ψᵀ (I_cc − I_cf I_ff⁻¹ I_fc) ψ: what is left of a cause when columns are free.
-fn left(fisher: &Matrix, cause: &[usize], psi: &[f64], free: Vec<usize>) -> Option<f64> {
-    let factor = fisher.picked(&free, &free).factorised()?;
-    let across = fisher.picked(&free, cause).times(psi);
-    let whole: f64 = fisher.picked(cause, cause).times(psi).iter().zip(psi).map(|(a, b)| a * b).sum();
-    Some(whole - factor.solve_lower(&across).iter().map(|it| it * it).sum::<f64>())
+impl Discrimination {
+    /// ψᵀ (I_cc − I_cf I_ff⁻¹ I_fc) ψ: what is left of the cause when a rival and what is held are free.
+    fn left(&self, fisher: &Matrix, rival: &Range<usize>) -> Option<f64> {
+        let Self { cause, psi, held, .. } = self;
+        let free: Vec<usize> = held.iter().copied().chain(rival.clone()).collect();
+        let factor = fisher.picked(&free, &free).factorised()?;
+        let across = fisher.picked(&free, cause).times(psi);
+        let whole: f64 = fisher.picked(cause, cause).times(psi).iter().zip(psi).map(|(a, b)| a * b).sum();
+        Some(whole - factor.solve_lower(&across).iter().map(|it| it * it).sum::<f64>())
+    }
 }
 
 #[cfg(test)]

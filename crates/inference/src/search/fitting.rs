@@ -8,7 +8,7 @@
 //!
 //! with the nuisances N (zeros, the model's own errors) and their priors P. V follows from Q's residual, so both are found in turn.
 
-use super::{Applied, Search};
+use super::{Applied, AttributionFit, SETTLED, Search};
 use crate::covariance::{Background, Marginal, Systems};
 use crate::error::InferenceError;
 use crate::model::{Column, CommonError, Linearised};
@@ -18,33 +18,6 @@ const STEPS: usize = 12;
 const STEPS_OF_SEARCH: usize = 3;
 /// How often a step is halved.
 const HALVINGS: i32 = 5;
-/// Steps that move no number that is asked for by more than this many standard deviations end.
-const SETTLED: f64 = 0.1;
-
-/// The measurement about a fitted point.
-pub struct AttributionFit {
-    /// Applied hypotheses, with the fitted coordinates.
-    pub applied: Applied,
-    /// By how many standard deviations the next covariance would move a number that is asked for at most.
-    pub unsettled: f64,
-    /// The channels' systems about the point.
-    pub systems: Systems,
-    /// Sizes of the smooth background.
-    pub background: Background,
-    /// The systems with that background.
-    pub marginal: Marginal,
-    /// The model about the point.
-    pub linearised: Linearised,
-    /// Coordinates of all columns beside the point: those of the nuisances.
-    pub coordinates: Vec<f64>,
-}
-
-impl AttributionFit {
-    /// Whether it stands; else it ran out of steps on the way.
-    pub fn is_settled(&self) -> bool {
-        self.unsettled < SETTLED
-    }
-}
 
 /// A covariance that is held, and the point about which it was found.
 struct Held<'h> {
@@ -128,19 +101,7 @@ impl<L> Search<'_, L> {
         let mut square = self.square(from, held.marginal)?;
         let mut point = from.clone();
         for _ in 0..most {
-            // A threshold of friction bends Q: there a whole step may lead up.
-            let shortened =
-                (0..=HALVINGS).map(|halvings| self.stepped(&point, &step, 0.5_f64.powi(halvings)));
-            let mut lower = None;
-            for next in shortened {
-                let readings = self.model.readings(&next);
-                let own = self.square(&next, &self.about(held, &[], &readings))?;
-                if own < square {
-                    lower = Some((next, own));
-                    break;
-                }
-            }
-            let Some((next, own)) = lower else { break };
+            let Some((next, own)) = self.shortened(&point, &step, square, held)? else { break };
             let moved = self.moved(&point, &next, held.marginal);
             (point, square) = (next, own);
             if moved < SETTLED {
@@ -158,6 +119,25 @@ impl<L> Search<'_, L> {
             step = fitted.solved(&marginal)?.coordinates;
         }
         Ok(point)
+    }
+
+    /// After as much of a step as makes Q less than this, and what it is there; none where no part of it does. Where a threshold of friction
+    /// bends Q a whole step may lead up.
+    fn shortened(
+        &self,
+        from: &Applied,
+        step: &[f64],
+        square: f64,
+        held: &Held<'_>,
+    ) -> Result<Option<(Applied, f64)>, InferenceError> {
+        for halvings in 0..=HALVINGS {
+            let next = self.stepped(from, step, 0.5_f64.powi(halvings));
+            let own = self.square(&next, &self.about(held, &[], &self.model.readings(&next)))?;
+            if own < square {
+                return Ok(Some((next, own)));
+            }
+        }
+        Ok(None)
     }
 
     /// The held covariance about other readings, with the nuisances and these columns.
@@ -180,16 +160,15 @@ impl<L> Search<'_, L> {
 
     /// By how many standard deviations a number that is asked for is moved at most.
     fn moved(&self, from: &Applied, to: &Applied, marginal: &Marginal) -> f64 {
-        let moved = |((at, before), (_, after)): (&(usize, Vec<f64>), &(usize, Vec<f64>))| {
-            let columns = self.columns.of_hypothesis[*at].iter();
-            let numbers = columns.zip(before.iter().zip(after));
-            numbers
-                .map(|(column, (before, after))| {
-                    (after - before).abs() * marginal.fisher.at(*column, *column).sqrt()
-                })
-                .fold(0.0, f64::max)
-        };
-        from.iter().zip(to).map(moved).fold(0.0, f64::max)
+        let mut most = 0.0_f64;
+        for ((at, before), (_, after)) in from.iter().zip(to) {
+            for (column, (before, after)) in
+                self.columns.of_hypothesis[*at].iter().zip(before.iter().zip(after))
+            {
+                most = most.max((after - before).abs() * marginal.fisher.at(*column, *column).sqrt());
+            }
+        }
+        most
     }
 
     /// After a part of a step, as far as the ranges let it.

@@ -16,12 +16,11 @@ use rayon::prelude::*;
 
 use self::bootstrap::{Bootstrap, Draw};
 use self::columns::Columns;
-pub use self::fitting::AttributionFit;
 use self::score_test::{Projected, Test};
-use crate::covariance::{Fitted, Smooth};
+use crate::covariance::{Background, Fitted, Marginal, Smooth, Systems};
 use crate::error::{InferenceError, Stage, factorised};
 use crate::hypothesis::Parameter;
-use crate::model::Model;
+use crate::model::{Linearised, Model};
 use crate::observations::Observations;
 use crate::policy::{LEVEL, SIGNATURE_ERROR};
 use tactpad_numeric::dense::Matrix;
@@ -36,11 +35,39 @@ const TAKEN: f64 = 5.0;
 const SHORTLIST: usize = 6;
 /// No more causes than this are looked for.
 const CAUSES_MAX: usize = 12;
+/// Steps of a fit that move no number that is asked for by more than this many standard deviations end.
+const SETTLED: f64 = 0.1;
+
 /// Hypotheses that hold, each with its coordinates.
 pub type Applied = Vec<(usize, Vec<f64>)>;
 
 /// What each specimen has of its own: hypotheses whose numbers are normal, effect by effect.
 pub type RandomEffects = Vec<Vec<usize>>;
+
+/// The measurement about a fitted point.
+pub struct AttributionFit {
+    /// Applied hypotheses, with the fitted coordinates.
+    pub applied: Applied,
+    /// By how many standard deviations the next covariance would move a number that is asked for at most.
+    pub unsettled: f64,
+    /// The channels' systems about the point.
+    pub systems: Systems,
+    /// Sizes of the smooth background.
+    pub background: Background,
+    /// The systems with that background.
+    pub marginal: Marginal,
+    /// The model about the point.
+    pub linearised: Linearised,
+    /// Coordinates of all columns beside the point: those of the nuisances.
+    pub coordinates: Vec<f64>,
+}
+
+impl AttributionFit {
+    /// Whether it stands; else it ran out of steps on the way.
+    pub fn is_settled(&self) -> bool {
+        self.unsettled < SETTLED
+    }
+}
 
 /// Result of the search for causes.
 pub struct Attribution {

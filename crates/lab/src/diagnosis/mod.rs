@@ -128,30 +128,31 @@ pub fn diagnose(
     pad: &SimulatedPad<'_>,
     without: &[Effect],
 ) -> Result<Diagnosis, DiagnosisError> {
-    diagnosed(table, pad, without, Validation::OnLockedRows)
+    diagnosed(table, pad, without, Scope::Full)
 }
 
-/// The same causes as those of [`diagnose`], in two thirds of the time: what they gain on locked rows, the ceiling there and the plan of further
-/// measurements are absent.
+/// The same causes as those of [`diagnose`], in half of the time: what they gain on locked rows, the ceiling there and the measurements that
+/// would tell them apart are absent.
 ///
 /// # Errors
 /// The table has too little in it to tell causes apart.
 pub fn causes(table: &Table, pad: &SimulatedPad<'_>) -> Result<Diagnosis, DiagnosisError> {
-    diagnosed(table, pad, &[], Validation::LeftOut)
+    diagnosed(table, pad, &[], Scope::CausesOnly)
 }
 
-/// Whether the findings are judged by the rows in which they were not looked for.
+/// How much is asked of a table.
 #[derive(Clone, Copy, PartialEq)]
-enum Validation {
-    OnLockedRows,
-    LeftOut,
+enum Scope {
+    /// Causes, their worth on rows in which they were not looked for, and the measurements that tell them apart.
+    Full,
+    CausesOnly,
 }
 
 fn diagnosed(
     table: &Table,
     pad: &SimulatedPad<'_>,
     without: &[Effect],
-    validation: Validation,
+    scope: Scope,
 ) -> Result<Diagnosis, DiagnosisError> {
     let conventions = Conventions::of(table, pad);
     // Whoever leaves one of them out takes the labels as they are written.
@@ -180,14 +181,8 @@ fn diagnosed(
     let mut model = Atlas::new(pad, without, &all, &open);
     let found = attributed(&mut model).map_err(DiagnosisError::Inference)?;
     let missing = model.missing();
-    concluded(
-        gate,
-        [&open, &locked],
-        &model,
-        &found,
-        Question { missing, without, individual: &[], validation },
-    )
-    .map_err(DiagnosisError::Inference)
+    concluded(gate, [&open, &locked], &model, &found, Question { missing, without, individual: &[], scope })
+        .map_err(DiagnosisError::Inference)
 }
 
 /// What was asked, and what cannot be answered.
@@ -196,7 +191,7 @@ struct Question<'q> {
     without: &'q [Effect],
     /// What each target has of its own: several at once need no reason in common.
     individual: &'q [Effect],
-    validation: Validation,
+    scope: Scope,
 }
 
 /// What is said of causes that were found at the open rows, after the checks of the recording.
@@ -205,7 +200,7 @@ fn concluded(
     [open, locked]: [&Observations; 2],
     model: &dyn ModelOfRows,
     found: &Attribution,
-    Question { missing, without, individual, validation }: Question<'_>,
+    Question { missing, without, individual, scope }: Question<'_>,
 ) -> Result<Diagnosis, InferenceError> {
     let measured = gate.unrepaired.take();
     let all = &gate.observations;
@@ -234,10 +229,10 @@ fn concluded(
     let half = |at: usize| Rows { model: models[at].as_ref(), observations: &halves[at], unrepaired: None };
     let is_complete = !found.random_effects.is_empty()
         && is_all_removed([&half(0), &half(1)], &found.fit.applied, &found.fit.systems.noise);
-    let diagnosis = summary(&search, found, &rows, &missing, Judgement { is_complete, validation })?;
+    let diagnosis = summary(&search, found, &rows, &missing, Judgement { is_complete, scope })?;
     let excess = (!without.contains(&Effect::NoiseExcess))
         .then(|| excess(open, &found.fit.systems.noise, &found.fit.linearised.readings));
-    let asks_for_steps = validation == Validation::OnLockedRows && !without.contains(&Effect::LabelRounded);
+    let asks_for_steps = scope == Scope::Full && !without.contains(&Effect::LabelRounded);
     let rounded = if asks_for_steps { rounded(&rows[0], &found.fit) } else { Vec::new() };
     for (finding, notice) in rounded {
         gate.findings.push(finding);
@@ -337,7 +332,7 @@ fn check_meant(table: &Table) -> Result<(), DiagnosisError> {
 struct Judgement {
     /// Nothing is left of which they may be a part.
     is_complete: bool,
-    validation: Validation,
+    scope: Scope,
 }
 
 /// Everything that is said about what was found.
@@ -346,22 +341,22 @@ fn summary(
     found: &Attribution,
     [open, locked]: &[Rows<'_>; 2],
     missing: &[NotTestable],
-    Judgement { is_complete, validation }: Judgement,
+    Judgement { is_complete, scope }: Judgement,
 ) -> Result<Diagnosis, InferenceError> {
     let (fit, rows) = (&found.fit, [open, locked]);
-    let is_validated = validation == Validation::OnLockedRows;
+    let is_full = scope == Scope::Full;
     let remainders = unnamed_squares(found);
     let whole = search.removed(fit)? + remainders.iter().sum::<f64>();
     let NamingResult { candidates, unnamed_by_channel, doubted_by_channel } =
         named(search, found, whole, remainders, is_complete)?;
     let unnamed: f64 = unnamed_by_channel.iter().sum();
-    let separation = Separation::new(search, found);
+    let separation = is_full.then(|| Separation::new(search, found));
     let applied: Applied = candidates.iter().map(|it| fit.applied[it.place].clone()).collect();
     let is_open = |it: &&Candidate| !it.finding.confounded_with.is_empty();
     let open_findings: Vec<OpenFinding> =
         candidates.iter().filter(is_open).map(|it| (it.place, it.finding.confounded_with.clone())).collect();
     let told = |Candidate { place, finding, is_doubted }| {
-        let separate_by = separation.told(place, &finding.confounded_with);
+        let separate_by = separation.as_ref().and_then(|it| it.told(place, &finding.confounded_with));
         let finding = Finding { separate_by, ..finding };
         if is_doubted { doubted(finding) } else { finding }
     };
@@ -379,15 +374,15 @@ fn summary(
         rmse_extended: rmse(open, &applied, &open.zeros(&applied)),
         background_mm: fit.background.prior.length_mm,
         background_share: rms(fit.background.shares.iter().flatten().copied()),
-        ceiling_share: is_validated.then(|| ceiling_share(rows, &applied, &fit.systems.noise)).flatten(),
-        gain: is_validated.then(|| gain(search, fit, rows, &applied)).flatten(),
+        ceiling_share: is_full.then(|| ceiling_share(rows, &applied, &fit.systems.noise)).flatten(),
+        gain: is_full.then(|| gain(search, fit, rows, &applied)).flatten(),
         not_detected: not_detected(search, found)?,
         not_testable: missing.to_vec(),
         unnamed_share,
         unnamed_by_channel,
         findings,
         gatekeepers: unsettled(fit).into_iter().collect(),
-        next: if is_validated { proposal(&separation, &open_findings) } else { Proposal::default() },
+        next: separation.as_ref().map_or_else(Proposal::default, |it| proposal(it, &open_findings)),
     })
 }
 

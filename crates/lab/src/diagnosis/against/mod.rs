@@ -27,7 +27,7 @@ use crate::diagnosis::gatekeepers::{self, Gate, guarded};
 use crate::diagnosis::label::{Label, Search};
 use crate::diagnosis::report::{Diagnosis, Finding, Notice};
 use crate::diagnosis::validation::gain::Rows;
-use crate::diagnosis::{Judgement, Validation, summary, with_gatekeepers};
+use crate::diagnosis::{Judgement, Scope, summary, with_gatekeepers};
 use crate::effect::Effect;
 use tactpad_core::counted::counted;
 use tactpad_core::tables::measured::sheet::Sheet;
@@ -160,7 +160,7 @@ fn told(
         &found,
         &rows,
         &missing(columns, there),
-        Judgement { is_complete: false, validation: Validation::OnLockedRows },
+        Judgement { is_complete: false, scope: Scope::Full },
     )
     .map_err(no_solution)?;
     if there.is_repeated {

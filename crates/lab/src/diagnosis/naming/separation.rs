@@ -81,8 +81,11 @@ pub(crate) struct Separation<'s, 'm> {
     pub(super) experiments: Vec<Experiment>,
     elsewhere: Vec<OnceCell<Option<ExperimentModel>>>,
     /// What is known of experiments, fitted causes and their rivals.
-    known: RefCell<BTreeMap<(usize, usize, Vec<usize>), Option<Repeats>>>,
+    known: RefCell<BTreeMap<Asked, Option<Repeats>>>,
 }
+
+/// An experiment, a fitted cause by its place, and its rivals.
+type Asked = (usize, usize, Vec<usize>);
 
 /// For each rival, how often an experiment must be made to tell a cause from it; none if it does not.
 type Repeats = Vec<Option<usize>>;

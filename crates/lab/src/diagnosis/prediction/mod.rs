@@ -18,7 +18,7 @@ use crate::diagnosis::gatekeepers::guarded;
 use crate::diagnosis::label::Search;
 use crate::diagnosis::report::{Diagnosis, Notice};
 use crate::diagnosis::simulation::atlas::chosen;
-use crate::diagnosis::{Question, Validation, concluded};
+use crate::diagnosis::{Question, Scope, concluded};
 use crate::effect::Effect;
 use tactpad_core::counted::counted;
 use tactpad_core::tables::measured::sheet::Sheet;
@@ -78,7 +78,7 @@ pub fn diagnose(
         individual: &[Effect::ChannelOffset],
         missing: sensor.missing(),
         without: asked.without,
-        validation: Validation::OnLockedRows,
+        scope: Scope::Full,
     };
     let mut diagnosis = concluded(gate, [&open, &locked], &model, &found, question).map_err(no_solution)?;
     unplaced(&mut diagnosis, &rows.columns);

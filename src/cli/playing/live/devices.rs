@@ -12,6 +12,7 @@ use tactpad::bridge::transport::evdev::battery::Battery;
 use tactpad::bridge::transport::evdev::beside::raw_node;
 use tactpad::bridge::transport::evdev::found::{self, FoundDevice, reading_command};
 use tactpad::bridge::transport::pads::{Attachment, FoundPad, attached, usb_serial_ports};
+use tactpad::bridge::transport::serial;
 use tactpad::source::read::read;
 use tactpad::source::{Evdev, Origin, Source, shipped};
 
@@ -86,10 +87,9 @@ struct DevicesReport {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pads = listed(&attached());
-    let ports = serialport::available_ports().unwrap_or_default();
     let is_pad = |name: &String| pads.iter().any(|pad| pad.path == *name);
     let serial_ports: Vec<_> =
-        ports.into_iter().map(|port| port.port_name).filter(|name| !is_pad(name)).collect();
+        serial::ports().into_iter().map(|port| port.port_name).filter(|name| !is_pad(name)).collect();
     let mut usb_ports = listed(&usb_serial_ports());
     usb_ports.retain(|port| serial_ports.contains(&port.path));
     let input_devices = input_devices();

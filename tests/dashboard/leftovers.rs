@@ -1,7 +1,7 @@
 //! Pages, clients and commands come and go: no descriptor and no thread of theirs stays.
 
 use std::fs;
-use std::io::{BufRead, BufReader, Write};
+use std::io::Write;
 use std::net::TcpStream;
 
 use crate::running::comes_true;
@@ -19,24 +19,8 @@ fn counts(shown: &Shown) -> (usize, usize) {
     (count("fd"), count("task"))
 }
 
-/// A page that looks on, and reads no more than that it may.
-fn live_page(shown: &Shown) -> TcpStream {
-    let mut stream = TcpStream::connect(&shown.host).unwrap();
-    let Shown { host, token, .. } = shown;
-    write!(
-        stream,
-        "GET /api/live HTTP/1.1\r\nHost: {host}\r\nAuthorization: Bearer {token}\r\nUpgrade: websocket\r\n\
-         Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
-    )
-    .unwrap();
-    let mut line = String::new();
-    BufReader::new(&stream).read_line(&mut line).unwrap();
-    assert!(line.contains(" 101 "), "{line}");
-    stream
-}
-
 fn come_and_go(shown: &Shown) {
-    let pages: Vec<TcpStream> = (0..PAGES).map(|_| live_page(shown)).collect();
+    let pages: Vec<TcpStream> = (0..PAGES).map(|_| shown.live_page()).collect();
     assert_eq!(shown.ask("GET /", "").status, 200);
     shown.wait_until_playing();
     let mut half_asked = TcpStream::connect(&shown.host).unwrap();

@@ -8,6 +8,7 @@ mod calibrate;
 #[path = "../support/clock.rs"]
 mod clock;
 mod disturbance;
+mod drawn_requests;
 mod editor;
 mod finger;
 mod guides;

@@ -1,6 +1,8 @@
 //! A bridge that shows its page, with a folder of its own.
 
 use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -72,6 +74,22 @@ impl Shown {
     pub(crate) fn ask(&self, request: &str, body: &str) -> Answer {
         let token = format!("Authorization: Bearer {}", self.token);
         http::ask(&self.host, request, &[&token, "Content-Type: application/json"], body.as_bytes())
+    }
+
+    /// A page that looks on, and reads no more than that it may.
+    pub(crate) fn live_page(&self) -> TcpStream {
+        let mut stream = TcpStream::connect(&self.host).unwrap();
+        let Self { host, token, .. } = self;
+        write!(
+            stream,
+            "GET /api/live HTTP/1.1\r\nHost: {host}\r\nAuthorization: Bearer {token}\r\nUpgrade: websocket\r\n\
+             Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+        )
+        .unwrap();
+        let mut line = String::new();
+        BufReader::new(&stream).read_line(&mut line).unwrap();
+        assert!(line.contains(" 101 "), "{line}");
+        stream
     }
 
     pub(crate) fn status(&self) -> Value {

@@ -272,6 +272,7 @@ impl Draw {
     fn sequel(&mut self, event: Event) -> Vec<Step> {
         let (is_there, is_old) = (self.below(3) == 0, self.either());
         let restart = self.restart();
+        let restless: [Event; 3] = std::array::from_fn(|_| self.restless());
         let mut later =
             |from_ms: i64, to_ms: i64, event| Step { after_ms: self.between(from_ms, to_ms) as u32, event };
         match event {
@@ -285,9 +286,23 @@ impl Draw {
             }
             // One whose wire is loose is so then, too.
             Event::Off(_, Off::Drift { .. } | Off::Rail { .. }) => vec![later(0, 500, restart)],
+            // Who does not wait asks for the next thing before the last is done.
+            Event::Ask(Wish::Weigh { .. } | Wish::Tare) => {
+                restless.into_iter().map(|event| later(400, 950, event)).collect()
+            }
             Event::Keep(true) => vec![later(0, 3_000, Event::Keep(false))],
             Event::Stall(true) => vec![later(0, 3_000, Event::Stall(false))],
             _ => Vec::new(),
+        }
+    }
+
+    /// What keeps a pad from playing for a moment.
+    fn restless(&mut self) -> Event {
+        match self.below(4) {
+            0 => Event::Identify(self.below(PADS.len() as u64) as usize),
+            1 => Event::Ask(Wish::TogglePause),
+            2 => Event::Ask(Wish::Tare),
+            _ => Event::Ask(Wish::Weigh { g: self.of(&[50, 200, 500]) }),
         }
     }
 

@@ -308,9 +308,11 @@ impl World {
         let [.., largest, read] = self.read.make_contiguous() else { return Ok(()) };
         let is_largest = largest.sequence == u32::MAX >> (32 - self.sequence_bits);
         let is_sound = zero.sequence == 0 && zero.time_us > largest.time_us && !zero.status.restarted();
-        // A first frame of another time may have begun a run in between.
-        let is_lost = !self.judge.causes.has_passed(self.play.now, Cause::Loss);
-        if read != zero || !is_largest || !is_sound || is_lost || self.frozen_until.is_some() {
+        // A first frame of another time may have begun a run in between; and by a clock that runs away no two frames go on from each other.
+        let is_in_doubt = [Cause::Loss, Cause::Clock]
+            .into_iter()
+            .any(|cause| !self.judge.causes.has_passed(self.play.now, cause));
+        if read != zero || !is_largest || !is_sound || is_in_doubt || self.frozen_until.is_some() {
             return Ok(());
         }
         match self.play.bridge.driver.pipeline.line_finding() {

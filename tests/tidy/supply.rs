@@ -29,6 +29,18 @@ fn is_shippable(name: &str, licence: &str) -> bool {
 }
 
 #[test]
+fn packages_are_made_by_the_same_licences() {
+    let text = std::fs::read_to_string(root().join("dist/texts/about.toml")).unwrap();
+    let about: toml::Table = toml::from_str(&text).unwrap();
+    let mut accepted: Vec<&str> =
+        about["accepted"].as_array().unwrap().iter().filter_map(toml::Value::as_str).collect();
+    let mut known: Vec<&str> = UNCHANGED.iter().map(|(_, licence)| *licence).chain(PERMISSIVE).collect();
+    accepted.sort_unstable();
+    known.sort_unstable();
+    assert_eq!(accepted, known);
+}
+
+#[test]
 fn each_crate_is_of_the_registry_and_may_be_shipped() {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.current_dir(root()).args(["metadata", "--locked", "--format-version", "1"]);

@@ -1,6 +1,6 @@
 //! What of a recording belongs to cues: the stretches in which they were answered, one after the other.
 
-use super::followed::FeltPress;
+use super::permutation_test::FeltPress;
 use tactpad_core::quantity::Contact;
 use tactpad_core::time::StreamInstant;
 use tactpad_lab::tuning::trace::{Trace, TraceEvents, TracePoint};

@@ -4,10 +4,10 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
 use super::asking::{Asked, Asking, CueTarget, Seen};
-use super::followed::{ERROR_RATE, follow};
 use super::guide::{
     GuideContext, GuideResult, GuideState, NO_ACTION, PageStep, PendingResult, StepAction, StepState, Target,
 };
+use super::permutation_test::{ERROR_RATE, follow};
 use super::pieces::{Pieces, TAIL_US};
 use crate::dashboard::call_subscribers::TimedCall;
 use crate::dashboard::practice::Wish;

@@ -1,8 +1,8 @@
 // The view "Doctor": what the program found on this machine, and the command that mends each finding.
 
 import { get } from "./link/api.js";
-import { commandLine, copyButton } from "./shared/command.js";
-import { button, el, say } from "./shared/dom.js";
+import { commandLine, copyButton } from "./common/command.js";
+import { button, el, say } from "./common/dom.js";
 
 const STATES = {
   good: { sign: "✓", word: "good", look: "good" },

@@ -1,12 +1,12 @@
 // The view "Guides": step by step, as the program tells them. It knows no guide by itself.
 
-import { announce } from "./shared/announce.js";
+import { announce } from "./common/announce.js";
 import { get, post, withToken } from "./link/api.js";
-import { commandLine } from "./shared/command.js";
-import { button, el, number, row, say, scroller, svg, table } from "./shared/dom.js";
+import { commandLine } from "./common/command.js";
+import { button, el, number, row, say, scroller, svg, table } from "./common/dom.js";
 import { NumberField } from "./fields/number_field.js";
 import { Plate } from "./picture/plate.js";
-import { cueTone } from "./shared/tones.js";
+import { cueTone } from "./common/tones.js";
 
 const STEPS = {
   todo: { sign: "○", word: "to do" },

@@ -1,8 +1,8 @@
 // Starts the page: the way in, settings, views, the live socket, and the notices at the top.
 
-import { announce } from "./shared/announce.js";
+import { announce } from "./common/announce.js";
 import { setToken, takeToken } from "./link/api.js";
-import { say } from "./shared/dom.js";
+import { say } from "./common/dom.js";
 import { DraftStore, takeAsFragment } from "./profile/draft_store.js";
 import { LiveView } from "./live/live.js";
 import { fetchKeys, handshake } from "./link/handshake.js";
@@ -10,12 +10,12 @@ import { ProfileView } from "./profile/editor.js";
 import { GuidesView } from "./guides.js";
 import { ReportsView } from "./reports.js";
 import { DoctorView } from "./doctor.js";
-import { onShow, shown, startRouter } from "./shared/router.js";
-import { Screen } from "./shared/screen.js";
-import { startSettings } from "./shared/settings.js";
+import { onShow, shown, startRouter } from "./common/router.js";
+import { Screen } from "./common/screen.js";
+import { startSettings } from "./common/settings.js";
 import { Live } from "./link/socket.js";
 import { Trace } from "./picture/trace.js";
-import { loadWords } from "./shared/words.js";
+import { loadWords } from "./common/words.js";
 
 const NO_WAY_IN = "This page does not find its bridge: open it from the tray, or with `tactpad ctl dashboard`.";
 const LOST = "tactpad has ended, or it stands still. Start it again as you did before: this page goes on by itself, and a draft is kept.";

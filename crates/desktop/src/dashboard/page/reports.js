@@ -1,7 +1,7 @@
 // The view "Reports": what diagnoses came to; each opens in a tab of its own.
 
 import { get, withToken } from "./link/api.js";
-import { button, el, say } from "./shared/dom.js";
+import { button, el, say } from "./common/dom.js";
 
 export class ReportsView {
   constructor(section) {

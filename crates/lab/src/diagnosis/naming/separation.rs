@@ -80,12 +80,12 @@ pub(crate) struct Separation<'s, 'm> {
     found: &'s Attribution,
     pub(super) experiments: Vec<Experiment>,
     elsewhere: Vec<OnceCell<Option<ExperimentModel>>>,
-    /// What is known of experiments, fitted causes and their rivals.
-    known: RefCell<BTreeMap<Asked, Option<Repeats>>>,
+    /// What was computed of experiments, fitted causes and their rivals: findings and plan ask for the same.
+    cache: RefCell<BTreeMap<RepeatsKey, Option<Repeats>>>,
 }
 
 /// An experiment, a fitted cause by its place, and its rivals.
-type Asked = (usize, usize, Vec<usize>);
+type RepeatsKey = (usize, usize, Vec<usize>);
 
 /// For each rival, how often an experiment must be made to tell a cause from it; none if it does not.
 type Repeats = Vec<Option<usize>>;
@@ -98,7 +98,7 @@ impl<'s, 'm> Separation<'s, 'm> {
         let worth = |it: &Experiment| it.rows.rows() > 0 || it.by_hand.is_some();
         let experiments: Vec<Experiment> = catalogue(search.observations).into_iter().filter(worth).collect();
         let elsewhere = experiments.iter().map(|_| OnceCell::new()).collect();
-        Self { search, found, experiments, elsewhere, known: RefCell::default() }
+        Self { search, found, experiments, elsewhere, cache: RefCell::default() }
     }
 
     /// The measurement that separates the fitted cause at this place from its rivals, as a sentence; else one for each rival. None where
@@ -132,12 +132,12 @@ impl<'s, 'm> Separation<'s, 'm> {
 
     /// How often an experiment must be made to tell the fitted cause at this place from each rival; none where the model cannot say.
     pub(super) fn repeats(&self, number: usize, at: usize, rivals: &[usize]) -> Option<Repeats> {
-        let asked = (number, at, rivals.to_vec());
-        if let Some(known) = self.known.borrow().get(&asked) {
-            return known.clone();
+        let key = (number, at, rivals.to_vec());
+        if let Some(cached) = self.cache.borrow().get(&key) {
+            return cached.clone();
         }
         let found = self.both(number).and_then(|rows| rows.repeats(at, rivals));
-        self.known.borrow_mut().insert(asked, found.clone());
+        self.cache.borrow_mut().insert(key, found.clone());
         found
     }
 

@@ -1,9 +1,9 @@
 // "Press a key …": listens for one key, with those held beside it, or for one button of a gamepad. Escape leaves it.
 
-import { announce } from "../shared/announce.js";
-import { button } from "../shared/dom.js";
+import { announce } from "../common/announce.js";
+import { button } from "../common/dom.js";
 import { isModifier, keyName, padNames } from "./keys.js";
-import { controlsInWords } from "../shared/words.js";
+import { controlsInWords } from "../common/words.js";
 
 const LABELS = { keyboard: "Press a key …", gamepad: "Press a button …" };
 const HINTS = { keyboard: "A key is a place: its name is that of a US keyboard, whatever it types in your layout" };

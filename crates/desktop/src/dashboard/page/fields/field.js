@@ -1,10 +1,10 @@
 // One key of a profile as a field: label, control, explanation, and a reset to what holds without it.
 
 import { captureButton } from "./capture.js";
-import { el, say, set } from "../shared/dom.js";
+import { el, say, set } from "../common/dom.js";
 import { NumberField } from "./number_field.js";
 import { nameOf, tidy } from "./schema.js";
-import { capital, choiceInWords, choiceWritten, controlsInWords, controlsWritten, pathInWords, settingAt } from "../shared/words.js";
+import { capital, choiceInWords, choiceWritten, controlsInWords, controlsWritten, pathInWords, settingAt } from "../common/words.js";
 
 const DEVICES = new Set(["gamepad", "keyboard", "pointer"]);
 let fields = 0;

@@ -1,12 +1,12 @@
 // The form of all keys of a profile, made from the JSON Schema and the draft's document.
 
-import { announce } from "../shared/announce.js";
-import { button, el, say } from "../shared/dom.js";
+import { announce } from "../common/announce.js";
+import { button, el, say } from "../common/dom.js";
 import { Field } from "./field.js";
 import { nameOf } from "./schema.js";
 import { TABLES, withEffect, withTable, withoutTable } from "./templates.js";
 import { tablesOf, written } from "./values.js";
-import { capital, choiceInWords, controlsOf, settingAt } from "../shared/words.js";
+import { capital, choiceInWords, controlsOf, settingAt } from "../common/words.js";
 
 /** Keys that stand in sight even while they are not written: handles and the usual choices. */
 const IN_SIGHT = new Set(["release_n", "release_force_n", "min_force_n", "mode", "centre_radius_mm", "radius_hysteresis_mm", "rotation_deg",

@@ -1,7 +1,7 @@
 // A field for a number: a decimal comma is a decimal point, and what is no number of its range is told beside it and goes nowhere.
 
-import { announce } from "../shared/announce.js";
-import { el, say, set } from "../shared/dom.js";
+import { announce } from "../common/announce.js";
+import { el, say, set } from "../common/dom.js";
 
 const NUMBER = /^[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)$/;
 /** Whoever types on is not told of the half of a number. */

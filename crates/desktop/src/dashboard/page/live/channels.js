@@ -1,7 +1,7 @@
 // The channels: a bar, a number, and the health of each in words. A strain pad has nine, in microvolts; a described one those of its cells, in
 // newtons on the pad.
 
-import { el, number, say, table } from "../shared/dom.js";
+import { el, number, say, table } from "../common/dom.js";
 
 const NAMES = ["m0x", "m0y", "m0z", "m1x", "m1y", "m1z", "m2x", "m2y", "m2z"];
 const PLACES = ["0°", "120°", "240°"];

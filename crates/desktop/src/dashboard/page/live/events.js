@@ -1,8 +1,8 @@
 // What went out: lanes of the last ten seconds, one for each control, and a table of the newest events.
 
-import { colour } from "../shared/colours.js";
-import { el, number, row, say, scroller, table } from "../shared/dom.js";
-import { pressInWords } from "../shared/announce.js";
+import { colour } from "../common/colours.js";
+import { el, number, row, say, scroller, table } from "../common/dom.js";
+import { pressInWords } from "../common/announce.js";
 
 const WINDOW_US = 10_000_000;
 const LANE_PX = 22;

@@ -1,7 +1,7 @@
 // How long each stage takes: a histogram with logarithmic bins for each, and a table of percentiles.
 
-import { colour } from "../shared/colours.js";
-import { el, number, row, scroller, table } from "../shared/dom.js";
+import { colour } from "../common/colours.js";
+import { el, number, row, scroller, table } from "../common/dom.js";
 
 const STAGES = { read: "read", decode: "decode", map: "map", write: "write", end_to_end: "end to end" };
 const FROM_US = 0.5;

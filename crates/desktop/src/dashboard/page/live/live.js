@@ -1,13 +1,13 @@
 // The view "Live": state, plate, held controls and forces for who plays; below a fold what is measured.
 
-import { announcePress } from "../shared/announce.js";
+import { announcePress } from "../common/announce.js";
 import { Channels } from "./channels.js";
-import { el, number, say, scroller, table } from "../shared/dom.js";
+import { el, number, say, scroller, table } from "../common/dom.js";
 import { EventLanes } from "./events.js";
 import { Latency } from "./latency.js";
 import { Forces } from "../picture/meter.js";
 import { Finger, Plate } from "../picture/plate.js";
-import { rememberFold } from "../shared/settings.js";
+import { rememberFold } from "../common/settings.js";
 import { Status } from "./status.js";
 
 const FIGURES_MS = 100;

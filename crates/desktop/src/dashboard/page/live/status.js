@@ -1,8 +1,8 @@
 // What the program says of itself: state, pad, decoder, output, profile, counters; and the buttons that command it.
 
-import { announce } from "../shared/announce.js";
+import { announce } from "../common/announce.js";
 import { get, post } from "../link/api.js";
-import { button, el, number, row, say, scroller, set, table } from "../shared/dom.js";
+import { button, el, number, row, say, scroller, set, table } from "../common/dom.js";
 import { duration } from "./latency.js";
 
 const SIGNS = { playing: "▶", paused: "❚❚", taring: "◌", unweighed: "◌", weighing: "◌", waiting: "…", loaded: "⚠", doubtful: "⚠", denied: "✕", unclear: "⚠", silent: "⚠", faulty: "✕", refused: "✕" };

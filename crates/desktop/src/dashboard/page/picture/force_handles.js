@@ -1,6 +1,6 @@
 // The thresholds on the force meters of the editor, as handles.
 
-import { el } from "../shared/dom.js";
+import { el } from "../common/dom.js";
 import { Handle } from "./handles.js";
 import { Forces, MARKS, signed, thresholdRows } from "./meter.js";
 

@@ -1,8 +1,8 @@
 // A handle: something that can be dragged, and is a slider for keys and screen readers.
 
-import { number, set } from "../shared/dom.js";
+import { number, set } from "../common/dom.js";
 import { nameOf, tidy } from "../fields/schema.js";
-import { settingAt } from "../shared/words.js";
+import { settingAt } from "../common/words.js";
 
 const PAGE_STEPS = 10;
 const KEYS_MS = 800;

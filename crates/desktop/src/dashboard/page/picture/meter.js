@@ -1,6 +1,6 @@
 // Meters of the three forces: a bar that follows the finger, and a row for everything that has thresholds on it.
 
-import { el, number, say } from "../shared/dom.js";
+import { el, number, say } from "../common/dom.js";
 
 const FORCES = [
   { axis: "fz", name: "Press", meaning: "into the plate, Fz", sides: 1, least_n: 4 },

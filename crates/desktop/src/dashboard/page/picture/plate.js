@@ -1,6 +1,6 @@
 // The picture of the plate: the disc, directions, zones, rings, names and the centre of the hand.
 
-import { set, svg } from "../shared/dom.js";
+import { set, svg } from "../common/dom.js";
 import { PLATE_RADIUS_MM, ringPath, sectorPath } from "./geometry.js";
 
 const FAR_MM = 80;

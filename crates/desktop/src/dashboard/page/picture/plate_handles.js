@@ -1,6 +1,6 @@
 // The handles on the plate of the editor: the hand's centre, directions, zones.
 
-import { el, svg } from "../shared/dom.js";
+import { el, svg } from "../common/dom.js";
 import { middleDeg, near, polar, seenFrom } from "./geometry.js";
 import { Handle } from "./handles.js";
 import { mirror, sameTurn, tablesOf } from "../fields/values.js";

@@ -1,8 +1,8 @@
 // The view "Profile": the plate and the forces with handles, the form, the text; all of them edit one draft.
 
-import { announce } from "../shared/announce.js";
+import { announce } from "../common/announce.js";
 import { get } from "../link/api.js";
-import { button, el, say } from "../shared/dom.js";
+import { button, el, say } from "../common/dom.js";
 import { Draft } from "./draft.js";
 import { ForceHandles } from "../picture/force_handles.js";
 import { Form } from "../fields/form.js";

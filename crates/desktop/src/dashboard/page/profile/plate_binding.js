@@ -2,9 +2,9 @@
 
 import { Capture } from "../fields/capture.js";
 import { seenFrom } from "../picture/geometry.js";
-import { announce } from "../shared/announce.js";
-import { button, el, say, set } from "../shared/dom.js";
-import { controlsInWords } from "../shared/words.js";
+import { announce } from "../common/announce.js";
+import { button, el, say, set } from "../common/dom.js";
+import { controlsInWords } from "../common/words.js";
 
 const LABEL = "Bind on the plate";
 const WHERE = "Press on the pad, or in the picture, what is to be bound; Escape leaves it.";

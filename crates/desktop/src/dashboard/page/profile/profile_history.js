@@ -1,8 +1,8 @@
 // The history of a profile; and what is done with it as a whole: duplicate, rename, delete, export, import.
 
-import { announce } from "../shared/announce.js";
+import { announce } from "../common/announce.js";
 import { get, post, request, withToken } from "../link/api.js";
-import { button, el, say } from "../shared/dom.js";
+import { button, el, say } from "../common/dom.js";
 import { askName, readProfile, writeProfile } from "./saving.js";
 
 const place = (name, rest = "") => `/api/profile/${encodeURIComponent(name)}${rest}`;

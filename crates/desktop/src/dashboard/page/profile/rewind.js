@@ -1,8 +1,8 @@
 // "What would this have done?": the last minute of play, once as it is saved and once with the draft.
 
-import { announce } from "../shared/announce.js";
+import { announce } from "../common/announce.js";
 import { post } from "../link/api.js";
-import { button, el, number, row, scroller, table } from "../shared/dom.js";
+import { button, el, number, row, scroller, table } from "../common/dom.js";
 
 const MOST = 50;
 

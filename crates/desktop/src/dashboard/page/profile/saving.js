@@ -1,7 +1,7 @@
 // Saves profiles: over the file that was read, or under a new name; and asks when the file changed meanwhile.
 
 import { get, request } from "../link/api.js";
-import { button, el, say } from "../shared/dom.js";
+import { button, el, say } from "../common/dom.js";
 
 const NAME = /^[^./\\:]+$/;
 const address = (name) => `/api/profile/${encodeURIComponent(name)}`;

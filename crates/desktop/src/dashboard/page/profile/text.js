@@ -1,6 +1,6 @@
 // The text of a profile with line numbers, and what the program says of it.
 
-import { el, say } from "../shared/dom.js";
+import { el, say } from "../common/dom.js";
 
 const SEVERITIES = { error: { sign: "✕", look: "bad" }, warning: { sign: "⚠", look: "warn" } };
 const TYPING_MS = 1000;

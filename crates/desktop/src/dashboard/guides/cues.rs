@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::asking::CueTarget;
+use super::cue_sequence::CueTarget;
 use super::guide::{GuideContext, GuideResult, GuideStatus, PageGuide, Proposal};
 use super::pieces::Pieces;
 use super::recording::{NO_NAME, Recording};
@@ -209,7 +209,7 @@ pub(super) fn fitted(
 
 #[cfg(test)]
 mod tests {
-    use super::super::asking::{Asked, Asking, Seen};
+    use super::super::cue_sequence::{AnsweredCue, CueSequence, PadObservation};
     use super::super::force_range;
     use super::super::pieces::TAIL_US;
     use super::super::recording::judged;
@@ -240,8 +240,8 @@ mod tests {
     fn played(hand: PracticeHand, targets: &[CueTarget], repeats: usize, seed: u64) -> Pieces {
         let at = |us| HostInstant::default().plus_us(us);
         let mut practice = Practice::new(hand, seed);
-        let mut seen = Seen { now: at(0), is_touched: false, touches: 0 };
-        let mut asking = Asking::begin(targets.to_vec(), repeats, seed, seen);
+        let mut seen = PadObservation { now: at(0), is_touched: false, touches: 0 };
+        let mut asking = CueSequence::begin(targets.to_vec(), repeats, seed, seen);
         let (mut script, mut asked_us) = (finger(practice.obey(asking.cue().unwrap().wish)), 0);
         let (mut moments, mut touch) = (Vec::new(), Touch::new());
         let mut random = SplitMix64::named(seed, "noise");
@@ -264,7 +264,7 @@ mod tests {
             }
             assert!(now_us < 900_000_000, "the cues do not end");
         }
-        let stretch = |it: &Asked| {
+        let stretch = |it: &AnsweredCue| {
             let [from_us, to_us] = [it.begin, it.end.plus_us(TAIL_US)].map(|moment| moment.us_since(at(0)));
             let own = moments.iter().filter(|it| (from_us..to_us).contains(&it.at.as_us()));
             let begun = |it: &TracePoint| StreamInstant::from_us(it.at.as_us() - from_us);

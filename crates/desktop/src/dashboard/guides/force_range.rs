@@ -1,6 +1,6 @@
 //! The force range: light and hard presses in a drawn order, and a profile whose forces suit them.
 
-use super::asking::CueTarget;
+use super::cue_sequence::CueTarget;
 use super::guide::{GuideContext, GuideResult, GuideStatus, PageGuide, Proposal};
 use super::pieces::Pieces;
 use super::recording::{NO_NAME, Recording};

@@ -1,7 +1,7 @@
 //! Guides: lists of steps with a state, that lead people through something. The page shows them and knows none by itself.
 
-mod asking;
 mod at_home;
+mod cue_sequence;
 mod cues;
 mod first_run;
 mod force_range;

@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
-use super::asking::{Asked, Asking, CueTarget, Seen};
+use super::cue_sequence::{AnsweredCue, CueSequence, CueTarget, PadObservation};
 use super::guide::{
     GuideContext, GuideResult, GuideState, NO_ACTION, PageStep, PendingResult, StepAction, StepState, Target,
 };
@@ -43,7 +43,7 @@ pub(super) enum Recording {
 
 /// A recording that is under way.
 pub(super) struct Ongoing {
-    asking: Asking,
+    asking: CueSequence,
     seed: u64,
     past: ReplayBuffer,
     heard: Receiver<TimedCall>,
@@ -51,9 +51,9 @@ pub(super) struct Ongoing {
     bytes: usize,
 }
 
-fn seen(context: &GuideContext<'_>) -> Seen {
+fn seen(context: &GuideContext<'_>) -> PadObservation {
     let is_touched = context.status.contact.is_some();
-    Seen { now: context.now, is_touched, touches: context.status.health.pipeline.contacts }
+    PadObservation { now: context.now, is_touched, touches: context.status.health.pipeline.contacts }
 }
 
 impl Ongoing {
@@ -84,7 +84,7 @@ impl Recording {
         let seed = u64::from_le_bytes(random().map_err(|error| error.to_string())?);
         let heard = (context.subscribe)();
         let past = (context.past)().ok_or("there is no pad yet: plug it in, then begin")?;
-        let asking = Asking::begin(targets, repeats, seed, seen(context));
+        let asking = CueSequence::begin(targets, repeats, seed, seen(context));
         let ongoing = Ongoing { asking, seed, past, heard, calls: Vec::new(), bytes: 0 };
         ongoing.tell(context);
         Ok(Self::On(Box::new(ongoing)))
@@ -233,12 +233,12 @@ pub(super) fn judged(
 }
 
 /// What came for each cue. The pad's clock may have jumped in between, so each stretch has its own begin.
-fn stretches(past: ReplayBuffer, calls: &[TimedCall], asked: &[Asked]) -> Vec<(usize, Trace)> {
+fn stretches(past: ReplayBuffer, calls: &[TimedCall], asked: &[AnsweredCue]) -> Vec<(usize, Trace)> {
     let ReplayBuffer { begin: mut pipeline, calls: earlier, .. } = past;
     let until = earlier.back().map(|(at, _)| *at);
     earlier.iter().for_each(|(at, call)| make(&mut pipeline, *at, call, |_| ()));
     let mut calls = calls.iter().filter(|(at, _)| until.is_none_or(|until| *at > until)).peekable();
-    let stretch = |asked: &Asked| {
+    let stretch = |asked: &AnsweredCue| {
         while let Some((at, call)) = calls.next_if(|(at, _)| *at < asked.begin) {
             make(&mut pipeline, *at, call, |_| ());
         }

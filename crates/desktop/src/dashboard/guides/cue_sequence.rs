@@ -23,7 +23,7 @@ pub(super) struct CueTarget {
 
 /// A cue that was answered.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Asked {
+pub(super) struct AnsweredCue {
     pub(super) target: usize,
     /// It was asked for then,
     pub(super) begin: HostInstant,
@@ -33,7 +33,7 @@ pub(super) struct Asked {
 
 /// What the pad shows at a moment.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(super) struct PadObservation {
     pub(super) now: HostInstant,
     pub(super) is_touched: bool,
     /// Touches since the bridge began.
@@ -42,19 +42,19 @@ pub(super) struct Seen {
 
 /// The cues.
 #[derive(Debug)]
-pub(super) struct Asking {
+pub(super) struct CueSequence {
     pub(super) targets: Vec<CueTarget>,
     order: Vec<usize>,
-    pub(super) asked: Vec<Asked>,
+    pub(super) asked: Vec<AnsweredCue>,
     /// When the cue was given, and how many touches there were by then.
-    since: Seen,
+    since: PadObservation,
     quiet_since: Option<HostInstant>,
     pub(super) is_paused: bool,
 }
 
-impl Asking {
+impl CueSequence {
     /// Asks for each target so often, in an order that depends on `seed`.
-    pub(super) fn begin(targets: Vec<CueTarget>, repeats: usize, seed: u64, seen: Seen) -> Self {
+    pub(super) fn begin(targets: Vec<CueTarget>, repeats: usize, seed: u64, seen: PadObservation) -> Self {
         let mut order: Vec<usize> =
             (0..targets.len() * repeats).map(|number| number % targets.len()).collect();
         SplitMix64::named(seed, "cues").shuffle(&mut order);
@@ -78,7 +78,7 @@ impl Asking {
     }
 
     /// Looks at the pad; whether another cue has begun.
-    pub(super) fn update(&mut self, seen: Seen) -> bool {
+    pub(super) fn update(&mut self, seen: PadObservation) -> bool {
         let Some(cue) = self.cue() else { return false };
         let is_rest = cue.wish == Wish::Rest;
         let is_answered = seen.touches > self.since.touches && !seen.is_touched;
@@ -94,12 +94,12 @@ impl Asking {
             }
         };
         let Some((end, target)) = end.zip(self.order.get(self.asked.len()).copied()) else { return false };
-        self.asked.push(Asked { target, begin: self.since.now, end });
+        self.asked.push(AnsweredCue { target, begin: self.since.now, end });
         self.ask(seen);
         true
     }
 
-    fn ask(&mut self, seen: Seen) {
+    fn ask(&mut self, seen: PadObservation) {
         (self.since, self.quiet_since) = (seen, None);
     }
 
@@ -108,19 +108,19 @@ impl Asking {
     }
 
     /// Goes on after a pause, with the cue that was given.
-    pub(super) fn go_on(&mut self, seen: Seen) {
+    pub(super) fn go_on(&mut self, seen: PadObservation) {
         self.is_paused = false;
         self.ask(seen);
     }
 
     /// Asks for the last one once more.
-    pub(super) fn again(&mut self, seen: Seen) {
+    pub(super) fn again(&mut self, seen: PadObservation) {
         self.asked.pop();
         self.ask(seen);
     }
 
     /// Asks no more for what is asked for: this hand cannot do it.
-    pub(super) fn leave_out(&mut self, seen: Seen) {
+    pub(super) fn leave_out(&mut self, seen: PadObservation) {
         if let Some(left) = self.order.get(self.asked.len()).copied() {
             self.order.retain(|target| *target != left);
             self.asked.retain(|asked| asked.target != left);
@@ -133,8 +133,8 @@ impl Asking {
 mod tests {
     use super::*;
 
-    fn seen(s: f64, is_touched: bool, touches: u64) -> Seen {
-        Seen { now: HostInstant::default().plus_us((s * 1e6) as u64), is_touched, touches }
+    fn seen(s: f64, is_touched: bool, touches: u64) -> PadObservation {
+        PadObservation { now: HostInstant::default().plus_us((s * 1e6) as u64), is_touched, touches }
     }
 
     #[test]
@@ -150,7 +150,7 @@ mod tests {
                 is_double: false,
             }),
         };
-        let mut asking = Asking::begin(vec![target("one"), target("two")], 2, 1, seen(0.0, false, 7));
+        let mut asking = CueSequence::begin(vec![target("one"), target("two")], 2, 1, seen(0.0, false, 7));
         assert_eq!(asking.count(), 4);
         assert!(!asking.update(seen(100.0, false, 7)), "nobody is hurried");
         assert!(!asking.update(seen(101.0, true, 8)) && !asking.update(seen(102.0, false, 8)));

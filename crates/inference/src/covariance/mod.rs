@@ -224,6 +224,21 @@ impl Systems {
         self.marginal_of(&all.iter().collect::<Vec<_>>(), self.columns + further.len(), background)
     }
 
+    /// The same of some of the rows.
+    pub fn marginal_at(
+        &self,
+        rows: &[usize],
+        columns: &[usize],
+        background: &Background,
+    ) -> Result<Marginal, InferenceError> {
+        let of_channel = |(channel, system): (usize, &ChannelSystem)| {
+            system.at(rows, columns).map_err(|error| error.in_channel(channel))
+        };
+        let all: Vec<_> = self.channels.par_iter().enumerate().map(of_channel).collect();
+        let all = all.into_iter().collect::<Result<Vec<NormalEquations>, InferenceError>>()?;
+        self.marginal_of(&all.iter().collect::<Vec<_>>(), self.columns, background)
+    }
+
     fn picked(&self, columns: &[usize]) -> Vec<NormalEquations> {
         self.channels.iter().map(|it| it.equations.picked(columns)).collect()
     }

@@ -125,6 +125,23 @@ impl ChannelSystem {
         self.with(numbers, &signatures, &self.residual)
     }
 
+    /// Those of some of its rows, for some of its columns.
+    ///
+    /// # Errors
+    /// The errors are not finite.
+    pub fn at(&self, rows: &[usize], columns: &[usize]) -> Result<NormalEquations, InferenceError> {
+        let picked = |column: &Vec<f64>| -> Vec<f64> { rows.iter().map(|row| column[*row]).collect() };
+        let own = self.equations.columns.iter().zip(&self.signatures);
+        let own = own.filter(|(number, _)| columns.contains(number));
+        let own: Vec<(usize, Vec<f64>)> = own.map(|(number, column)| (*number, picked(column))).collect();
+        let signatures: Vec<(usize, &[f64])> =
+            own.iter().map(|(number, column)| (*number, column.as_slice())).collect();
+        let [background, errors] =
+            [&self.background, &self.stated.columns].map(|all| all.iter().map(picked).collect::<Vec<_>>());
+        let white = Whitening::none(rows.len());
+        Ok(Self::of(&signatures, &background, &errors, &picked(&self.residual), white)?.equations)
+    }
+
     /// Those of the same rows about another point, where the channel has this residual and these columns.
     pub fn about(&self, columns: &[(usize, &[f64])], residual: &[f64]) -> NormalEquations {
         let whitened = columns.iter().map(|(number, values)| (*number, self.whitening.whitened(values)));

@@ -5,6 +5,7 @@ pub mod columns;
 mod constancy;
 pub mod estimates;
 mod fitting;
+mod held_out;
 mod random_effects;
 mod rivals;
 pub mod score_test;
@@ -110,22 +111,37 @@ impl<'m, L> Search<'m, L> {
         fit = self.without_superfluous(fit, critical, random_effects, &mut Vec::new())?;
         // What was taken out or replaced stays out, so that the search ends.
         let mut barred: Vec<usize> = Vec::new();
-        while fit.applied.len() < CAUSES_MAX + random_effects.iter().flatten().count() {
-            let Some(next) = self.next(&fit, critical, &barred, random_effects)? else { break };
-            let mut applied = fit.applied.clone();
-            applied.push((next, vec![0.0; self.model.hypotheses()[next].parameters.len()]));
-            fit = self.within_range(self.nearly_fitted(&applied, Some(&fit))?, critical, &mut barred)?;
-            critical = self.critical(&fit)?;
-            fit = self.without_superfluous(fit, critical, random_effects, &mut barred)?;
-        }
-        while !fit.is_settled() {
-            let causes = fit.applied.len();
-            fit = self.fitted(&fit.applied, Some(&fit))?;
-            critical = self.critical(&fit)?;
-            fit = self.without_superfluous(fit, critical, random_effects, &mut barred)?;
-            if fit.applied.len() == causes {
+        loop {
+            while fit.applied.len() < CAUSES_MAX + random_effects.iter().flatten().count() {
+                let Some(next) = self.next(&fit, critical, &barred, random_effects)? else { break };
+                let mut applied = fit.applied.clone();
+                applied.push((next, vec![0.0; self.model.hypotheses()[next].parameters.len()]));
+                fit = self.within_range(self.nearly_fitted(&applied, Some(&fit))?, critical, &mut barred)?;
+                critical = self.critical(&fit)?;
+                fit = self.without_superfluous(fit, critical, random_effects, &mut barred)?;
+            }
+            while !fit.is_settled() {
+                let causes = fit.applied.len();
+                fit = self.fitted(&fit.applied, Some(&fit))?;
+                critical = self.critical(&fit)?;
+                fit = self.without_superfluous(fit, critical, random_effects, &mut barred)?;
+                if fit.applied.len() == causes {
+                    break;
+                }
+            }
+            let gains = self.predictive_gains(&fit);
+            let is_chosen = |at: &usize| !is_random_effect(random_effects, fit.applied[*at].0);
+            let chosen = (0..fit.applied.len()).filter(is_chosen);
+            let Some(least) = chosen.min_by(|one, other| gains[*one].total_cmp(&gains[*other])) else {
+                break;
+            };
+            if gains[least] > 0.0 {
                 break;
             }
+            let mut applied = fit.applied.clone();
+            barred.push(applied.remove(least).0);
+            fit = self.nearly_fitted(&applied, Some(&fit))?;
+            critical = self.critical(&fit)?;
         }
         let reproduced = self.reproduced(&fit, random_effects)?;
         Ok(Attribution { fit, critical, random_effects: random_effects.to_vec(), reproduced })

@@ -281,3 +281,23 @@ fn gains_of_all_channels_are_found_as_such_and_a_supply_where_they_go_together()
     let (_, _, is_dense, rivals) = sparse_and_dense(&own.map(|gain| 1.3 * gain));
     assert!(is_dense && rivals.len() == 1, "{rivals:?}");
 }
+
+#[test]
+fn a_cause_foretells_rows_that_were_left_out_and_what_one_place_alone_says_does_not() {
+    let random = &mut SplitMix64::new(53);
+    let sensor = Sensor::new(6, contacts(random));
+    let gain = sensor.place_of(Cause::Gain(2));
+    let gain_of = |measured: &Observations| {
+        let search = Search::new(&sensor, measured, measured);
+        let fit = search.fitted(&vec![(gain, vec![0.0])], None).unwrap();
+        search.predictive_gains(&fit)[0]
+    };
+    let mut measured = sensor.measured(&[(gain, vec![libm::log(1.03)])], 0.01, random);
+    assert!(gain_of(&measured) > 10.0, "{}", gain_of(&measured));
+    // The five loads of one place, read so that they alone call for a gain.
+    measured = sensor.measured(&[], 0.01, random);
+    for row in (7..360).step_by(72) {
+        measured.readings[2][row] *= 1.5;
+    }
+    assert!(gain_of(&measured) <= 0.0, "{}", gain_of(&measured));
+}

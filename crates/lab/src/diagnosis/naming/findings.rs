@@ -13,12 +13,13 @@ pub(crate) fn findings(
     whole: f64,
 ) -> Result<Vec<(usize, Finding)>, InferenceError> {
     let mut findings = Vec::new();
+    let gains = search.predictive_gains(&found.fit);
     for (at, square) in search.squares(found)?.into_iter().enumerate() {
         let (hypothesis, _) = found.fit.applied[at];
         let (projected, score) = search.without(&found.fit, at)?;
         let test = projected.test(&search.columns.of_hypothesis[hypothesis], &score);
         let is_random_effect = is_random_effect(&found.random_effects, hypothesis);
-        if is_random_effect && test.p_value() >= found.critical {
+        if is_random_effect && (test.p_value() >= found.critical || gains[at] <= 0.0) {
             continue;
         }
         let (rivals, doubt) = if is_random_effect {

@@ -398,3 +398,29 @@ fn a_number_of_few_bits_hides_no_clock_that_is_set_anew() {
     let begun = [(0, PLUG_IN), (0, Rate(4_000)), (1_000, Event::SequenceBits(8)), (2_000, Damage(2))];
     holds(&[&begun[..], &[(0, anew), (2_000, Mend)]].concat());
 }
+
+#[test]
+fn an_old_frame_that_is_taken_for_a_gap_is_one() {
+    let begun = [
+        (0, Rate(100)),
+        (0, PLUG_IN),
+        (2_353, Pace(1)),
+        (89, Event::Lose(2)),
+        (478, Ask(Wish::Weigh { g: 50 })),
+    ];
+    let asked = [
+        (59, Damage(70)),
+        (319, Ask(Wish::Tare)),
+        (207, Lift),
+        (111, Touch(RIGHT)),
+        (637, Ask(Wish::Weigh { g: 500 })),
+    ];
+    holds(&[&begun[..], &asked, &[(6_400, Lift), (0, Repeat { age: 66, frames: 2 }), (0, Mend)]].concat());
+}
+
+#[test]
+fn bytes_that_run_into_a_frame_hide_it() {
+    let anew = Restart { time_us: 14_358_397_181_813_044_508, is_flagged: false, offset: 47_444, text: 3 };
+    let begun = [(0, Rate(100)), (0, PLUG_IN), (0, Event::SequenceBits(8)), (0, anew)];
+    holds(&[&begun[..], &[(2_541, Event::Rubbish(559)), (100, Lift), (0, Mend)]].concat());
+}

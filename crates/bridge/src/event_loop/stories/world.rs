@@ -76,6 +76,8 @@ pub(super) struct World {
     seeming: u32,
     before: Option<(Sample, HostInstant)>,
     damage: u32,
+    /// The next frame goes on where other bytes ended.
+    is_joined: bool,
     loss_permille: u32,
     damage_permille: u32,
     off: [Option<(Off, i32)>; 9],
@@ -137,6 +139,7 @@ impl World {
             seeming: 0,
             before: None,
             damage: 0,
+            is_joined: false,
             loss_permille: 0,
             damage_permille: 0,
             off: [None; 9],
@@ -286,6 +289,10 @@ impl World {
             self.damage = self.damage.saturating_sub(1);
             let place = self.chance.below(length as u64 - 1) as usize;
             frame[place] ^= 1 + self.chance.below(255) as u8;
+            return self.send(&frame[..length], None);
+        }
+        if std::mem::take(&mut self.is_joined) {
+            self.judge.causes.note(self.play.now, Cause::Loss);
             return self.send(&frame[..length], None);
         }
         self.send(&frame[..length], Some(&sample))?;

@@ -71,18 +71,20 @@ impl World {
             Event::Rubbish(seed) => {
                 let mut draw = Draw(SplitMix64::named(seed, "rubbish"));
                 let bytes: Vec<u8> = (0..=draw.below(100)).map(|_| draw.below(256) as u8).collect();
+                // Up to the next delimiter all is one frame.
+                self.is_joined = bytes.last() != Some(&0);
                 self.send_if_plugged(&bytes)?;
             }
             Event::Repeat { age, frames } => {
+                // One that looks like the first of a run seems to have lost those up to the next.
                 let is_dropped = self.is_dropped(age, frames);
+                let cause = if is_dropped { Cause::Old } else { Cause::Loss };
+                self.judge.causes.note(self.play.now, cause);
                 self.repeat(age, frames)?;
                 if is_dropped {
-                    self.judge.causes.note(self.play.now, Cause::Old);
                     self.judge.excuse();
                     return Ok(());
                 }
-                // One that looks like the first of a run seems to have lost those up to the next.
-                self.judge.causes.note(self.play.now, Cause::Loss);
             }
             Event::ClockJump(time_us) => {
                 self.doubt_clock();

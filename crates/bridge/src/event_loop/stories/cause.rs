@@ -9,7 +9,7 @@ use tactpad_core::time::HostInstant;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cause {
     /// It is pulled out.
-    Gone,
+    Unplugged,
     /// Its port may not be opened.
     Denied,
     /// What is plugged in cannot be used.
@@ -21,7 +21,7 @@ pub(super) enum Cause {
     /// A finger is on it.
     Touched,
     /// A finger is on it since the zero was measured, or may have been, so that the zero is a load: what comes after looks like no finger.
-    Under,
+    ZeroUnderLoad,
     /// A weight is weighed.
     Weighing,
     /// A channel is off.
@@ -35,27 +35,44 @@ pub(super) enum Cause {
     /// The loop does not come to run.
     Frozen,
     /// What it sent while it was silent comes now.
-    Late,
+    Delayed,
     /// It begins anew.
-    Anew,
+    Restarted,
     /// Its sequence number has too few bits, and begins again.
     Wraps,
     /// It began anew without a word, and went on by number and clock from where it was: it looks as if a finger had come.
-    Unnoticed,
+    UnflaggedRestart,
     /// An old frame came again.
-    Old,
+    RepeatedFrame,
     /// Something was over in a moment: a zero that somebody wants anew.
-    Moment,
+    ZeroRequested,
 }
 
 use Cause::{
-    Anew, Channel, Channels, Clock, Denied, Frozen, Gone, Late, Loss, Moment, Old, Paused, Silent, Touched,
-    Under, Unnoticed, Unusable, Weighing, Wraps,
+    Channel, Channels, Clock, Delayed, Denied, Frozen, Loss, Paused, RepeatedFrame, Restarted, Silent,
+    Touched, UnflaggedRestart, Unplugged, Unusable, Weighing, Wraps, ZeroRequested, ZeroUnderLoad,
 };
 
 const ALL: [Cause; 19] = [
-    Gone, Denied, Unusable, Silent, Paused, Touched, Under, Weighing, Channel, Channels, Loss, Clock, Frozen,
-    Late, Anew, Wraps, Unnoticed, Old, Moment,
+    Unplugged,
+    Denied,
+    Unusable,
+    Silent,
+    Paused,
+    Touched,
+    ZeroUnderLoad,
+    Weighing,
+    Channel,
+    Channels,
+    Loss,
+    Clock,
+    Frozen,
+    Delayed,
+    Restarted,
+    Wraps,
+    UnflaggedRestart,
+    RepeatedFrame,
+    ZeroRequested,
 ];
 
 impl Cause {
@@ -64,10 +81,10 @@ impl Cause {
     /// seconds, and so may other offsets.
     const fn aftermath_us(self) -> u64 {
         match self {
-            Gone | Denied | Unusable => 750_000,
-            Clock | Late => 1_500_000,
-            Channels | Unnoticed => 10_500_000,
-            Old => 100_000,
+            Unplugged | Denied | Unusable => 750_000,
+            Clock | Delayed => 1_500_000,
+            Channels | UnflaggedRestart => 10_500_000,
+            RepeatedFrame => 100_000,
             _ => 500_000,
         }
     }
@@ -75,22 +92,24 @@ impl Cause {
     /// Whether this state is one that comes of it.
     const fn explains(self, state: State) -> bool {
         match self {
-            Gone => matches!(state, State::Waiting),
+            Unplugged => matches!(state, State::Waiting),
             Denied => matches!(state, State::Denied),
             Unusable => matches!(state, State::Unclear),
             Silent | Frozen => matches!(state, State::Silent | State::Doubtful),
             Paused => matches!(state, State::Paused),
             // A finger that comes while a pad plays keeps nothing from playing.
             Touched => false,
-            Under => matches!(state, State::Loaded | State::Taring | State::Faulty | State::Doubtful),
+            ZeroUnderLoad => matches!(state, State::Loaded | State::Taring | State::Faulty | State::Doubtful),
             Weighing => matches!(state, State::Weighing),
-            Channel | Channels | Unnoticed => {
+            Channel | Channels | UnflaggedRestart => {
                 matches!(state, State::Faulty | State::Doubtful | State::Taring | State::Loaded)
             }
-            Old => matches!(state, State::Doubtful),
+            RepeatedFrame => matches!(state, State::Doubtful),
             Loss | Clock => matches!(state, State::Doubtful | State::Silent),
-            Late => matches!(state, State::Doubtful | State::Silent),
-            Anew | Wraps | Moment => matches!(state, State::Taring | State::Doubtful | State::Silent),
+            Delayed => matches!(state, State::Doubtful | State::Silent),
+            Restarted | Wraps | ZeroRequested => {
+                matches!(state, State::Taring | State::Doubtful | State::Silent)
+            }
         }
     }
 
@@ -101,7 +120,7 @@ impl Cause {
             LineFinding::Clock { .. } => matches!(self, Clock),
             LineFinding::ChannelStands { .. } => matches!(self, Channel | Channels),
             // That is what is seen of a pad that begins anew again and again, does not say so, and whose clock goes on.
-            LineFinding::SequenceWraps { .. } => matches!(self, Anew | Wraps),
+            LineFinding::SequenceWraps { .. } => matches!(self, Restarted | Wraps),
             _ => false,
         }
     }

@@ -9,7 +9,9 @@ use std::mem::{Discriminant, discriminant};
 
 use super::super::state;
 use super::super::virtual_time::Play;
-use super::cause::Cause::{self, Anew, Channel, Clock, Frozen, Loss, Silent, Under, Unnoticed, Wraps};
+use super::cause::Cause::{
+    self, Channel, Clock, Frozen, Loss, Restarted, Silent, UnflaggedRestart, Wraps, ZeroUnderLoad,
+};
 use super::cause::Causes;
 use crate::state::State;
 use tactpad_core::pipeline::Phase;
@@ -76,8 +78,8 @@ pub(super) struct Judge {
     /// What is found, and since when it is the same.
     stands: Option<(Subject, HostInstant)>,
     kept_since: Option<HostInstant>,
-    /// When channels answered again of which there was no zero.
-    answered: Option<HostInstant>,
+    /// When channels recovered again of which there was no zero.
+    recovered: Option<HostInstant>,
     /// A press that has to count by then.
     promise: Option<HostInstant>,
     /// The number after which a smaller one came, and when the pad had not counted past it.
@@ -98,7 +100,7 @@ impl Judge {
     }
 
     /// A finger that held something stayed while the pad was not heard. It counts again, once what came late is read.
-    pub(super) fn stay(&mut self, now: HostInstant) {
+    pub(super) fn press_again(&mut self, now: HostInstant) {
         self.promise = Some(now.plus_us(STAYS_US));
     }
 
@@ -117,14 +119,14 @@ impl Judge {
 
     /// The loop did not come to run until now.
     pub(super) fn thaw(&mut self, now: HostInstant, frozen_us: u64) {
-        self.wait_is_over(now, frozen_us);
+        self.delay_is_over(now, frozen_us);
         let is_touched = self.causes.within(now, frozen_us).any(|cause| cause == Cause::Touched);
         self.hear(now, is_touched);
         (self.kept_since, self.unheard) = (None, now);
     }
 
     /// What waited for so long comes now, and with it whatever was there then.
-    pub(super) fn wait_is_over(&mut self, now: HostInstant, waited_us: u64) {
+    pub(super) fn delay_is_over(&mut self, now: HostInstant, waited_us: u64) {
         self.causes.note_again(now, waited_us + NAMED_US);
     }
 
@@ -155,14 +157,14 @@ impl Judge {
     }
 
     /// All channels that were off answer again, and the zero was measured without them: it is measured anew.
-    pub(super) fn answer(&mut self, now: HostInstant) {
-        self.answered = Some(now);
+    pub(super) fn channels_recover(&mut self, now: HostInstant) {
+        self.recovered = Some(now);
     }
 
     fn may_go_down(&self, play: &Play, code: &Code) -> Result<(), Broken> {
         let now = play.now;
         let is_off = self.causes.within(now, FAR_US).any(|cause| cause == Channel);
-        let may_be_channel = is_off && self.causes.last(Channel) > self.answered;
+        let may_be_channel = is_off && self.causes.last(Channel) > self.recovered;
         if self.is_untouched(now) && !may_be_channel {
             return broken("nothing goes down without a finger", code);
         }
@@ -341,9 +343,9 @@ impl Judge {
             false => self.causes.was_off(now, us, channel),
         };
         // Of a channel that answers again there is a zero at once.
-        let has_answered = self.answered.is_some_and(|at| self.causes.last(Channel) <= Some(at));
+        let has_recovered = self.recovered.is_some_and(|at| self.causes.last(Channel) <= Some(at));
         Some(self.causes.within(now, us).any(|cause| match cause {
-            Channel if line.contains(STRAY) && has_answered => false,
+            Channel if line.contains(STRAY) && has_recovered => false,
             Channel => causes.contains(&Channel) && named_channel(line).is_none_or(was_off),
             cause => causes.contains(&cause),
         }))
@@ -382,8 +384,8 @@ const FOUND: [(&str, &[Cause]); 5] = [
     ("frames are lost or damaged", &[Loss, Frozen, Silent]),
     ("all the time while others change", &[Channel]),
     // What no finger makes a channel read a finger does that has moved since the zero was measured under it.
-    (STRAY, &[Channel, Under, Unnoticed]),
-    ("comes a smaller one", &[Anew, Wraps]),
+    (STRAY, &[Channel, ZeroUnderLoad, UnflaggedRestart]),
+    ("comes a smaller one", &[Restarted, Wraps]),
 ];
 
 /// The kind of a finding, and the channel that it is about.

@@ -424,3 +424,10 @@ fn bytes_that_run_into_a_frame_hide_it() {
     let begun = [(0, Rate(100)), (0, PLUG_IN), (0, Event::SequenceBits(8)), (0, anew)];
     holds(&[&begun[..], &[(2_541, Event::Rubbish(559)), (100, Lift), (0, Mend)]].concat());
 }
+
+#[test]
+fn another_message_ends_what_bytes_ran_into() {
+    let begun =
+        [(0, Mend), (0, Stall(true)), (0, Event::Rubbish(685)), (0, Touch(RIGHT)), (0, Event::Identify(0))];
+    holds(&[&begun[..], &[(1_000, Stall(false)), (1, Touch(RIGHT))]].concat());
+}

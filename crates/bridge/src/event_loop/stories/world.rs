@@ -38,7 +38,7 @@ const KEPT_MAX: usize = 64 << 10;
 const KNOWN: usize = 64;
 
 /// So many of the first samples of a pad that began anew may seem to go on from those before; one of them the text of its boot loader spoils.
-const SEEMING: u32 = 3;
+const RESTART_FRAMES: u32 = 3;
 
 /// The loop wakes so often in one moment at most.
 const WAKES_MAX: u32 = 1_000;
@@ -73,7 +73,7 @@ pub(super) struct World {
     /// The newest samples that the bridge has read, or that wait for it.
     read: VecDeque<Sample>,
     /// The pad began anew, and so many more samples in a row may seem to go on from the one that was read before, at this time.
-    seeming: u32,
+    unconfirmed_restart_frames: u32,
     before: Option<(Sample, HostInstant)>,
     damage: u32,
     /// The next frame goes on where other bytes ended.
@@ -136,7 +136,7 @@ impl World {
             kept_from: HostInstant::default(),
             stalled_from: HostInstant::default(),
             read: VecDeque::with_capacity(KNOWN),
-            seeming: 0,
+            unconfirmed_restart_frames: 0,
             before: None,
             damage: 0,
             is_joined: false,
@@ -251,7 +251,7 @@ impl World {
         let shown_us = if self.clock_bits < 64 { time_us & ((1 << self.clock_bits) - 1) } else { time_us };
         if shown_us < self.play.time_us {
             self.doubt_clock();
-            self.note_moment();
+            self.note_zero_requested();
         }
         self.play.time_us = shown_us;
     }
@@ -259,7 +259,7 @@ impl World {
     /// A clock in doubt is looked at from here on, and what it does is found.
     fn doubt_clock(&mut self) {
         let (now, causes) = (self.play.now, &mut self.judge.causes);
-        if [Cause::Clock, Cause::Late].into_iter().any(|cause| !causes.has_passed(now, cause)) {
+        if [Cause::Clock, Cause::Delayed].into_iter().any(|cause| !causes.has_passed(now, cause)) {
             causes.note(now, Cause::Clock);
         }
     }
@@ -291,9 +291,9 @@ impl World {
             frame[place] ^= 1 + self.chance.below(255) as u8;
             return self.send(&frame[..length], None);
         }
-        if std::mem::take(&mut self.is_joined) {
+        let is_wrap = is_wrap && !self.is_joined;
+        if self.is_joined {
             self.judge.causes.note(self.play.now, Cause::Loss);
-            return self.send(&frame[..length], None);
         }
         self.send(&frame[..length], Some(&sample))?;
         if is_wrap { self.is_wrap_found(&sample) } else { Ok(()) }
@@ -305,7 +305,7 @@ impl World {
         let is_wrap = std::mem::replace(&mut self.play.sequence, number) != number;
         if is_wrap {
             self.judge.causes.note(self.play.now, Cause::Wraps);
-            self.note_moment();
+            self.note_zero_requested();
         }
         is_wrap
     }
@@ -330,6 +330,8 @@ impl World {
 
     /// Bytes leave the pad. They may be a sound sample.
     fn send(&mut self, bytes: &[u8], sound: Option<&Sample>) -> Result<(), Broken> {
+        let is_joined = std::mem::take(&mut self.is_joined);
+        let sound = sound.filter(|_| !is_joined);
         if let Some(kept) = &mut self.kept {
             if kept.len() + bytes.len() <= KEPT_MAX {
                 kept.extend_from_slice(bytes);
@@ -354,14 +356,18 @@ impl World {
     /// The bridge reads this sound sample now, or as soon as it comes to run.
     fn hear(&mut self, sample: &Sample) {
         if sample.status.restarted() {
-            self.seeming = 0;
+            self.unconfirmed_restart_frames = 0;
         }
-        if self.seeming > 0 {
+        if self.unconfirmed_restart_frames > 0 {
             if self.seems_to_go_on(sample) {
-                self.judge.causes.note(self.play.now, Cause::Unnoticed);
+                self.judge.causes.note(self.play.now, Cause::UnflaggedRestart);
             }
             let is_next = |last: &Sample| sample.time_us.wrapping_sub(last.time_us) <= 100_000;
-            self.seeming = if self.read.back().is_some_and(is_next) { self.seeming - 1 } else { SEEMING };
+            self.unconfirmed_restart_frames = if self.read.back().is_some_and(is_next) {
+                self.unconfirmed_restart_frames - 1
+            } else {
+                RESTART_FRAMES
+            };
         }
         if self.read.len() == KNOWN {
             self.read.pop_front();
@@ -473,13 +479,13 @@ impl World {
         }
         let is_several = is_off && self.was_off.iter().filter(|was_off| **was_off).count() > 1;
         let there = [
-            (Cause::Gone, !self.is_plugged),
+            (Cause::Unplugged, !self.is_plugged),
             (Cause::Denied, self.is_plugged && !is_open && self.port == PortState::Denied),
             (Cause::Unusable, self.is_plugged && !is_open && self.port == PortState::Unusable),
             (Cause::Silent, is_silent),
             (Cause::Paused, self.is_paused),
             (Cause::Touched, self.contact.fz_n > 0.0),
-            (Cause::Under, self.is_zero_under),
+            (Cause::ZeroUnderLoad, self.is_zero_under),
             (Cause::Weighing, phase == Phase::Weighing),
             (Cause::Channel, is_off),
             (Cause::Channels, is_several),
@@ -497,14 +503,14 @@ impl World {
     }
 
     /// Something is over in a moment, and the zero may be measured anew.
-    fn note_moment(&mut self) {
+    fn note_zero_requested(&mut self) {
         self.note_break();
         self.is_staying = false;
         self.is_zero_under |= self.contact.fz_n > 0.0;
     }
 
     /// The pad is not heard from here on.
-    fn wait_begins(&mut self) {
+    fn delay_begins(&mut self) {
         let is_held = self.play.bridge.driver.pipeline.held().next().is_some();
         self.is_staying = self.contact == RIGHT && is_held && self.judge.causes.have_passed(self.play.now);
     }
@@ -512,13 +518,13 @@ impl World {
     /// It is heard again: a finger that has stayed counts again.
     fn wait_ends(&mut self) {
         if std::mem::take(&mut self.is_staying) {
-            self.judge.stay(self.play.now);
+            self.judge.press_again(self.play.now);
         }
     }
 
     /// Something is over in a moment.
     fn note_break(&mut self) {
-        self.judge.causes.note(self.play.now, Cause::Moment);
+        self.judge.causes.note(self.play.now, Cause::ZeroRequested);
         self.judge.excuse();
     }
 

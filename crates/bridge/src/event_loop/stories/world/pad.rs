@@ -9,15 +9,16 @@ impl World {
         match event {
             Event::PlugIn { is_anew } if !self.is_plugged => {
                 self.is_plugged = true;
-                self.judge.causes.note(play.now, Cause::Anew);
+                self.judge.causes.note(play.now, Cause::Restarted);
                 play.plug_in();
+                self.is_joined = false;
                 if is_anew {
                     (play.time_us, play.sequence, play.status) = (0, 0, Status::OK.with_restarted());
                 }
             }
             Event::PullOut if self.is_plugged => {
                 self.is_plugged = false;
-                self.judge.causes.note(play.now, Cause::Gone);
+                self.judge.causes.note(play.now, Cause::Unplugged);
                 play.unplug();
                 self.kept = self.kept.take().map(|_| Vec::new());
                 if self.frozen_until.is_none() {
@@ -33,12 +34,12 @@ impl World {
                 };
             }
             Event::Restart { time_us, is_flagged, offset, text } => {
-                self.judge.causes.note(play.now, Cause::Anew);
+                self.judge.causes.note(play.now, Cause::Restarted);
                 (play.sequence, play.offset) = (0, [offset; 9]);
-                if self.seeming == 0 {
+                if self.unconfirmed_restart_frames == 0 {
                     self.before = self.read.back().copied().zip(self.judge.heard);
                 }
-                self.seeming = SEEMING;
+                self.unconfirmed_restart_frames = RESTART_FRAMES;
                 play.status = if is_flagged { Status::OK.with_restarted() } else { Status::OK };
                 self.set_clock(time_us);
                 self.send_if_plugged(BOOT_TEXTS[text].as_bytes())?;
@@ -48,18 +49,18 @@ impl World {
             Event::Stall(true) => {
                 if !std::mem::replace(&mut self.is_stalled, true) {
                     self.stalled_from = play.now;
-                    self.wait_begins();
+                    self.delay_begins();
                 }
             }
             Event::Stall(false) => {
                 if std::mem::take(&mut self.is_stalled) {
                     // What was there when it fell silent nobody saw pass.
-                    self.judge.wait_is_over(play.now, play.now.us_since(self.stalled_from));
+                    self.judge.delay_is_over(play.now, play.now.us_since(self.stalled_from));
                 }
             }
             Event::Keep(true) => {
                 if self.kept.is_none() {
-                    self.wait_begins();
+                    self.delay_begins();
                     (self.kept, self.kept_from) = (Some(Vec::new()), self.play.now);
                 }
             }
@@ -71,14 +72,14 @@ impl World {
             Event::Rubbish(seed) => {
                 let mut draw = Draw(SplitMix64::named(seed, "rubbish"));
                 let bytes: Vec<u8> = (0..=draw.below(100)).map(|_| draw.below(256) as u8).collect();
-                // Up to the next delimiter all is one frame.
-                self.is_joined = bytes.last() != Some(&0);
                 self.send_if_plugged(&bytes)?;
+                // Up to the next delimiter all is one frame.
+                self.is_joined = self.is_plugged && bytes.last() != Some(&0);
             }
             Event::Repeat { age, frames } => {
                 // One that looks like the first of a run seems to have lost those up to the next.
                 let is_dropped = self.is_dropped(age, frames);
-                let cause = if is_dropped { Cause::Old } else { Cause::Loss };
+                let cause = if is_dropped { Cause::RepeatedFrame } else { Cause::Loss };
                 self.judge.causes.note(self.play.now, cause);
                 self.repeat(age, frames)?;
                 if is_dropped {
@@ -120,7 +121,7 @@ impl World {
                     self.wait_ends();
                 }
             }
-            _ => self.note_moment(),
+            _ => self.note_zero_requested(),
         }
         if matches!(event, Event::Lose(_)) {
             self.judge.causes.note(self.play.now, Cause::Loss);
@@ -132,13 +133,13 @@ impl World {
     /// began.
     fn is_dropped(&self, age: u32, frames: u32) -> bool {
         let first = self.play.sequence.wrapping_sub(age);
-        let is_of_midst = |number: u32| {
+        let is_within_run = |number: u32| {
             let mut sent = self.play.sent.iter().rev();
             sent.find(|sent| sent.sequence == number).is_some_and(|sent| !sent.status.restarted())
         };
         let are_few = age <= KNOWN as u32 || frames.min(age) < 3;
-        let are_of_midst = (0..frames.min(age)).all(|back| is_of_midst(first.wrapping_add(back)));
-        self.judge.causes.have_passed(self.play.now) && are_few && are_of_midst
+        let are_within_run = (0..frames.min(age)).all(|back| is_within_run(first.wrapping_add(back)));
+        self.judge.causes.have_passed(self.play.now) && are_few && are_within_run
     }
 
     fn send_if_plugged(&mut self, bytes: &[u8]) -> Result<(), Broken> {
@@ -150,7 +151,7 @@ impl World {
         let mut off = self.off.iter().zip(self.is_dead_at_zero).filter(|(off, _)| off.is_some()).peekable();
         let are_dead = off.peek().is_some() && off.all(|(_, is_dead)| is_dead);
         if are_dead && self.is_heard_by_now() {
-            self.judge.answer(self.play.now);
+            self.judge.channels_recover(self.play.now);
         }
         (self.off, self.dead_since) = ([None; 9], [None; 9]);
         self.wire();
@@ -202,8 +203,8 @@ impl World {
     /// The hub hands on what it has kept.
     fn hand_on(&mut self) -> Result<(), Broken> {
         let Some(kept) = self.kept.take().filter(|kept| !kept.is_empty()) else { return Ok(()) };
-        self.judge.wait_is_over(self.play.now, self.play.now.us_since(self.kept_from));
-        self.judge.causes.note(self.play.now, Cause::Late);
+        self.judge.delay_is_over(self.play.now, self.play.now.us_since(self.kept_from));
+        self.judge.causes.note(self.play.now, Cause::Delayed);
         if self.frozen_until.is_some() {
             if self.play.bridge.connection.pad().is_some() {
                 kept.chunks(64).for_each(|bytes| self.play.buffer(bytes));
@@ -229,7 +230,7 @@ impl World {
             let older = self.play.sent.front().copied();
             let Some(sample) = sent.or(older) else { return Ok(()) };
             if is_silent && !self.read.contains(&sample) {
-                self.judge.causes.note(now, Cause::Late);
+                self.judge.causes.note(now, Cause::Delayed);
                 self.judge.hear(now, true);
             }
             self.send_message(&Message::Sample(sample))?;

@@ -73,7 +73,7 @@ impl World {
             | Wish::Resume
             | Wish::TogglePause
             | Wish::Panic
-            | Wish::Weigh { .. } => self.note_moment(),
+            | Wish::Weigh { .. } => self.note_zero_requested(),
             _ => {}
         }
         self.play.bridge.requests.sender().unwrap().send(request).unwrap();

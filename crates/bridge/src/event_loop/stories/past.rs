@@ -401,21 +401,19 @@ fn a_number_of_few_bits_hides_no_clock_that_is_set_anew() {
 
 #[test]
 fn an_old_frame_that_is_taken_for_a_gap_is_one() {
-    let begun = [
-        (0, Rate(100)),
-        (0, PLUG_IN),
-        (2_353, Pace(1)),
-        (89, Event::Lose(2)),
-        (478, Ask(Wish::Weigh { g: 50 })),
-    ];
-    let asked = [
+    let weigh = |g| Ask(Wish::Weigh { g });
+    let begun =
+        [(0, Rate(100)), (0, PLUG_IN), (62, Damage(1)), (1, Mend), (311, Stall(true)), (1_354, Event::Cure)];
+    let slow = [
+        (58, Pace(1)),
+        (63, Mend),
+        (26, Event::Lose(2)),
+        (478, weigh(50)),
         (59, Damage(70)),
         (319, Ask(Wish::Tare)),
-        (207, Lift),
-        (111, Touch(RIGHT)),
-        (637, Ask(Wish::Weigh { g: 500 })),
     ];
-    holds(&[&begun[..], &asked, &[(6_400, Lift), (0, Repeat { age: 66, frames: 2 }), (0, Mend)]].concat());
+    let pressed = [(207, Lift), (111, Touch(RIGHT)), (637, weigh(500)), (153, Lift), (39, Ask(Wish::Panic))];
+    holds(&[&begun[..], &slow, &pressed, &[(5_922, Repeat { age: 66, frames: 2 }), (0, Mend)]].concat());
 }
 
 #[test]

@@ -125,7 +125,7 @@ fn a_pad_as_it_is_made_is_told() {
 }
 
 #[test]
-#[ignore = "proof: 900 s: misses its goals, as docs/diagnosis.md says: forty pads instead of one"]
+#[ignore = "proof: 900 s: forty pads instead of one"]
 fn pads_as_they_are_made_are_told() {
     are_told(&two::at_a_time(&(1101..=1140).collect::<Vec<_>>(), run));
 }

@@ -415,7 +415,7 @@ impl Bridge {
 
     /// Renews the snapshot, and tells a state that lasts.
     fn publish(&mut self, now: HostInstant) {
-        if now.us_since(self.snapshot_at) < SNAPSHOT_US {
+        if now.us_since(self.snapshot_at) < SNAPSHOT_US && !self.notifier.begins() {
             return;
         }
         self.snapshot_at = now;

@@ -11,7 +11,7 @@ use tactpad_core::pipeline::weighing::{Progress, WeighingReport};
 use tactpad_core::time::HostInstant;
 
 /// Debounces reports: a state is reported once it has lasted for a second. A state in which the player must act is reported at once, and
-/// where several take turns, so that nothing plays, one of them after two seconds.
+/// where several take turns, so that nothing plays, one of them after two seconds. That a bridge begins without a pad is reported at once, too.
 /// What comes and goes is not reported each time, see [`RateLimit`].
 #[derive(Clone, Debug)]
 pub(super) struct Notifier {
@@ -20,6 +20,8 @@ pub(super) struct Notifier {
     /// The current state, and since when it lasts.
     candidate: State,
     since: HostInstant,
+    /// Whether no state was looked at yet.
+    begins: bool,
     /// Since when the bridge has not played and nothing was reported.
     untold_since: Option<HostInstant>,
     /// The lasting warning that was reported, if it is still so.
@@ -90,6 +92,7 @@ impl Notifier {
             reported: State::Playing,
             candidate: State::Playing,
             since: now,
+            begins: true,
             untold_since: None,
             reported_warning: None,
             reported_groups: false,
@@ -101,6 +104,11 @@ impl Notifier {
         }
     }
 
+    /// Whether no state was looked at yet.
+    pub(super) const fn begins(&self) -> bool {
+        self.begins
+    }
+
     /// The state to report at `now`, if there is one.
     pub(super) fn state_to_report(&mut self, now: HostInstant, state: State) -> Option<State> {
         if state != self.candidate {
@@ -108,8 +116,10 @@ impl Notifier {
         }
         self.untold_since = if state == State::Playing { None } else { self.untold_since.or(Some(now)) };
         let is_untold = self.untold_since.is_some_and(|since| now.us_since(since) >= UNTOLD_US);
+        let begins_without_pad = std::mem::take(&mut self.begins) && state == State::Waiting;
         // A lift may be all that there is of it, and a press that is not heard must not go without a word.
-        let lasts = state == State::Loaded || now.us_since(self.since) >= LASTING_US || is_untold;
+        let is_urgent = state == State::Loaded || begins_without_pad;
+        let lasts = is_urgent || now.us_since(self.since) >= LASTING_US || is_untold;
         let is_reported = lasts && state != self.reported && self.limit.allows(now, Topic::State(state));
         is_reported.then(|| {
             (self.reported, self.untold_since, self.is_line_overtaken) = (state, None, true);
@@ -272,6 +282,14 @@ mod tests {
             told.extend(notifier.state_to_report(at(ms), state).map(|state| (ms, state)));
         }
         assert_eq!(told, [(3_000, State::Waiting), (5_000, State::Playing)]);
+    }
+
+    #[test]
+    fn a_begin_without_a_pad_is_told_at_once() {
+        let now = HostInstant::default();
+        let mut notifier = Notifier::new(now);
+        assert_eq!(notifier.state_to_report(now, State::Waiting), Some(State::Waiting));
+        assert_eq!(notifier.state_to_report(now.plus_us(2_000_000), State::Waiting), None);
     }
 
     #[test]

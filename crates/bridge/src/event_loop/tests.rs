@@ -38,6 +38,8 @@ fn without_a_pad_it_wakes_at_most_five_times_a_second_and_still_looks_and_tells(
     let (mut bridge, messages, looked) = without_pad();
     let snapshot = bridge.snapshot();
     let begin = bridge.snapshot_at;
+    assert_eq!(bridge.turn(begin, ASLEEP).unwrap(), None);
+    assert_eq!(messages.0.lock().unwrap().len(), 1, "who starts it reads at once what it waits for");
     let count = wake_ups(&mut bridge, begin.plus_us(10_000_000));
     assert!(count <= 50, "{count} times in ten seconds");
     let looked = looked.load(Ordering::Relaxed);
@@ -59,7 +61,11 @@ fn another_profile_is_taken_and_one_that_cannot_be_read_is_told() {
     };
     assert_eq!(ask(Some("tetris")), (done(), "Tetris".into()));
     assert_eq!(ask(None), (r#"{"error":"there is none","ok":false}"#.into(), "Tetris".into()));
-    assert_eq!(*messages.0.lock().unwrap(), ["profile Tetris", "there is none\nthe profile in use stays"]);
+    let waits = "waiting for the pad: plug it in";
+    assert_eq!(
+        *messages.0.lock().unwrap(),
+        ["profile Tetris", waits, "there is none\nthe profile in use stays"]
+    );
 }
 
 #[test]

@@ -20,7 +20,7 @@ use self::printing::{wrapped, written::say};
 /// Turns a tactile disc with nine strain channels into a game controller.
 #[derive(Debug, Parser)]
 #[command(name = "tactpad", version, arg_required_else_help = true, max_term_width = wrapped::COLUMNS)]
-#[command(after_help = "Try it with nothing attached: tactpad demo\n\
+#[command(after_help = "Begin with: tactpad setup\nTry it with nothing attached: tactpad demo\n\
     On a desktop, tactpad alone plays with the pad that comes, and shows an icon.")]
 struct Arguments {
     #[command(subcommand)]

@@ -31,6 +31,8 @@ mod ran;
 mod recorded;
 #[cfg(target_os = "linux")]
 mod service;
+#[cfg(target_os = "linux")]
+mod setup;
 mod simulate;
 mod simulate_figures;
 mod simulate_pad;

@@ -15,6 +15,9 @@ use crate::cli::failure::Failure;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Verb {
+    /// Begin here: a few questions lead to the first game.
+    #[cfg(target_os = "linux")]
+    Setup(live::setup::Arguments),
     /// Play with a virtual pad: nothing needs to be attached.
     #[cfg(target_os = "linux")]
     Demo(live::demo::Arguments),
@@ -59,6 +62,8 @@ pub(super) enum Verb {
 /// Runs one of them; `program` is the whole program's command line, for its completions.
 pub(super) fn run(verb: &Verb, program: impl FnOnce() -> Command) -> Result<(), Failure> {
     match verb {
+        #[cfg(target_os = "linux")]
+        Verb::Setup(arguments) => live::setup::run(arguments),
         #[cfg(target_os = "linux")]
         Verb::Demo(arguments) => live::demo::run(arguments),
         #[cfg(target_os = "linux")]

@@ -5,12 +5,9 @@ use std::io;
 
 use serde_json::Value;
 
-use super::{ctl, last_profile, profile_selection, runtime};
+use super::{ctl, runtime};
 use crate::cli::failure::Failure;
-use crate::cli::playing::profile;
-use crate::cli::printing::written::say;
 use tactpad::bridge::control::ask;
-use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::tray::browser;
 
 /// Whether there is a desktop to play on.
@@ -28,8 +25,7 @@ pub(crate) fn command_line() -> Result<Option<Vec<String>>, Failure> {
         Err(error) if matches!(error.kind(), NotFound | ConnectionRefused) => {
             let shown: &[&str] =
                 if cfg!(feature = "dashboard") { &["--tray", "--dashboard"] } else { &["--tray"] };
-            let profile = format!("--profile={}", last_profile());
-            let words = ["tactpad", "run", &profile].into_iter().chain(shown.iter().copied());
+            let words = ["tactpad", "run"].into_iter().chain(shown.iter().copied());
             Ok(Some(words.map(str::to_owned).collect()))
         }
         Err(error) => Err(Failure::Failed(ctl::answer::no_answer(&path, &error))),
@@ -45,17 +41,4 @@ fn open_page(answer: &str) -> Result<(), Failure> {
         ));
     };
     browser::open(page).and_then(browser::Opening::wait).map_err(Failure::Failed)
-}
-
-/// The profile that was played last, if it can still be used.
-fn last_profile() -> String {
-    let Some(kept) = last_profile::kept() else { return profile_selection::FALLBACK.to_owned() };
-    if profile::read_aside(profile_selection::first(&kept), OutputChoice::AsWritten).is_ok() {
-        return kept;
-    }
-    say(format_args!(
-        "the profile that was played last, {kept}, cannot be used any more: playing {}",
-        profile_selection::FALLBACK
-    ));
-    profile_selection::FALLBACK.to_owned()
 }

@@ -38,6 +38,16 @@ pub(super) struct DescribedPad {
 }
 
 impl SourceOption {
+    /// The same, with the description that was chosen before where none is given.
+    pub(super) fn or(&self, chosen: Option<String>) -> Self {
+        Self { source: self.source.clone().or(chosen), no_grab: self.no_grab }
+    }
+
+    /// Whether a description is named.
+    pub(super) const fn is_given(&self) -> bool {
+        self.source.is_some()
+    }
+
     /// The described pad at `pad`, if it is one: by its own name or by --source.
     pub(super) fn read(
         &self,

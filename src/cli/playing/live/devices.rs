@@ -26,14 +26,14 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Debug, PartialEq, Eq, Serialize)]
-struct Listed {
-    address: String,
-    path: String,
-    serial_number: Option<String>,
+pub(super) struct Listed {
+    pub(super) address: String,
+    pub(super) path: String,
+    pub(super) serial_number: Option<String>,
     /// The address by its place, which stays when names and serial numbers do not tell pads apart.
-    place: Option<String>,
+    pub(super) place: Option<String>,
     /// The version of its firmware, and why that restarted, if it is one of ours.
-    firmware: Option<String>,
+    pub(super) firmware: Option<String>,
 }
 
 /// An input device that fits a description inside the program.
@@ -75,17 +75,23 @@ impl ListedDevice {
 }
 
 #[derive(Serialize)]
-struct DevicesReport {
-    pads: Vec<Listed>,
+pub(super) struct DevicesReport {
+    pub(super) pads: Vec<Listed>,
     /// Input devices that can be played with.
-    input_devices: Vec<ListedDevice>,
+    pub(super) input_devices: Vec<ListedDevice>,
     /// Serial ports that do not say that they are a pad, but may be one.
-    serial_ports: Vec<String>,
+    pub(super) serial_ports: Vec<String>,
     /// Those of them that are on the USB.
-    usb_ports: Vec<Listed>,
+    pub(super) usb_ports: Vec<Listed>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let report = found_here();
+    if arguments.json { print_json(&report) } else { Ok(print(&report)?) }
+}
+
+/// What is attached to this machine.
+pub(super) fn found_here() -> DevicesReport {
     let pads = listed(&attached());
     let is_pad = |name: &String| pads.iter().any(|pad| pad.path == *name);
     let serial_ports: Vec<_> =
@@ -93,8 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut usb_ports = listed(&usb_serial_ports());
     usb_ports.retain(|port| serial_ports.contains(&port.path));
     let input_devices = input_devices();
-    let report = DevicesReport { pads, input_devices, serial_ports, usb_ports };
-    if arguments.json { print_json(&report) } else { Ok(print(&report)?) }
+    DevicesReport { pads, input_devices, serial_ports, usb_ports }
 }
 
 /// The input devices that fit a shipped description, each with the first that does: names come before what others may have, too.

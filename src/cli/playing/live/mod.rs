@@ -19,8 +19,7 @@ pub(crate) mod guardian;
 mod guided_pad;
 mod keeping;
 mod kept_play;
-#[cfg(feature = "tray")]
-mod last_profile;
+mod last_choice;
 pub(super) mod latency;
 mod left_keys;
 mod newest;
@@ -40,6 +39,7 @@ mod reported;
 pub(super) mod run;
 mod runtime;
 mod screen;
+pub(super) mod setup;
 mod sound;
 #[cfg(feature = "tray")]
 mod tray_profiles;

@@ -60,7 +60,6 @@ impl ProfileSelection {
     }
 
     /// The argument of a command line that makes the same selection, in any folder.
-    #[cfg(feature = "tray")]
     pub(super) fn as_argument(&self) -> String {
         let path = std::path::absolute(&self.name).ok().filter(|_| !profile::is_known(&self.name));
         let whole = path.and_then(|path| path.into_os_string().into_string().ok());

@@ -10,6 +10,7 @@ use super::displays::DisplayOptions;
 use super::files::Files;
 use super::follower;
 use super::keeping::{KeepPlay, PlayKeeping};
+use super::last_choice::ChosenPad;
 use super::newest::Newest;
 use super::output::Output;
 use super::playing::{
@@ -19,7 +20,7 @@ use super::profile_selection;
 use super::runtime::BridgeName;
 use super::screen::Screen;
 use super::wired::WiringOption;
-use super::{chosen, runtime};
+use super::{chosen, last_choice, runtime};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;
@@ -40,8 +41,10 @@ use tactpad::bridge::transport::fault::FaultPlan;
     terminal, unless it was started with nohup; where it has none, SIGHUP reads the profile again.")]
 pub(crate) struct Arguments {
     /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], load-cells:PATH[@BAUD], tablet, touchpad, … (source list), virtual, capture:FILE.
-    #[arg(long, value_name = "PAD", default_value = "auto")]
-    pad: PadAddress,
+    ///
+    /// Without it the pad that `tactpad setup` was told, else auto.
+    #[arg(long, value_name = "PAD")]
+    pad: Option<PadAddress>,
     /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.
     #[arg(long)]
     wait: bool,
@@ -52,8 +55,10 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     device: PadOptions,
     /// A profile's name or file; it is read again when it is changed. Or auto[:NAME]: the one whose [[program]] is in front, else NAME.
-    #[arg(long, default_value = "super-mario")]
-    profile: String,
+    ///
+    /// Without it the profile that was chosen last by `tactpad setup` or in the tray, else super-mario.
+    #[arg(long)]
+    profile: Option<String>,
     #[command(flatten)]
     decoder: DecoderChoice,
     /// Where events go: auto (virtual devices, else an event log here), uinput, x11, log:FILE (- is stdout), none.
@@ -80,18 +85,22 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     wait_for_no_reader()?;
-    let Arguments { pad, profile, output, decoder, .. } = arguments;
-    let profile = profile_selection::first(profile);
+    let Arguments { output, decoder, .. } = arguments;
+    let ChosenPad { address: pad, source } = arguments.chosen_pad();
+    let (pad, source) = (&pad, arguments.source.or(source));
+    let selected = arguments.profile.clone().unwrap_or_else(last_choice::profile);
+    let profile = profile_selection::first(&selected);
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
-    let described = arguments.source.read(pad, decoder)?;
+    let described = source.read(pad, decoder)?;
     let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
     let audience = audience(output);
-    let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
+    let host = TerminalHost::new(&selected, output.choice(), audience)?;
     let selection = host.selection();
     let profile = profile::read(profile, output.choice())?;
     let host = host.on_pad(described.as_ref(), &profile);
-    let patience =
-        patience(&arguments.pad, if arguments.wait { WaitOption::Given } else { WaitOption::NotGiven });
+    // Who names no pad waits for the one that was chosen.
+    let waits = arguments.wait || arguments.pad.is_none();
+    let patience = patience(pad, if waits { WaitOption::Given } else { WaitOption::NotGiven });
     let is_shown = audience == Audience::Nobody;
     let newest = Newest::default();
     let (sink, missing) = output.open_or(|| newest.sink(is_shown))?;
@@ -104,7 +113,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let second = reached.as_ref().filter(|_| arguments.name.is_none());
     let second = second.map(|name| format!(" (tactpad ctl --name {name})")).unwrap_or_default();
-    let title = format!("{} → {} → {name} → {}{second}", arguments.pad, decoder.name, sink.describe());
+    let title = format!("{pad} → {} → {name} → {}{second}", decoder.name, sink.describe());
     let title = printable(&title);
     let prints = *output == Output::Stdout || (missing.is_some() && !is_shown);
     if let Some(missing) = missing {
@@ -144,12 +153,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     prepared.start(&bridge)?;
     let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.events()));
-    let ending = play(&mut bridge, &arguments.pad);
+    let ending = play(&mut bridge, pad);
     drop(screen);
     // What keeps play ends with what it hears.
     drop(bridge);
     keeping.end();
     ended(ending, prints)
+}
+
+impl Arguments {
+    /// The pad that is meant; what was chosen before stands back behind a pad or description that is named.
+    fn chosen_pad(&self) -> ChosenPad {
+        let auto = PadAddress::Auto { serial_number: None };
+        let named = self.pad.clone().or_else(|| self.source.is_given().then(|| auto.clone()));
+        match named {
+            Some(address) => ChosenPad { address, source: None },
+            None => last_choice::pad().unwrap_or(ChosenPad { address: auto, source: None }),
+        }
+    }
 }
 
 /// How the run ended, told where nobody sees it.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::last_profile;
+use super::last_choice;
 use super::profile_selection::{FileStamp, ProfileSelection};
 use crate::cli::playing::profile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
@@ -64,7 +64,7 @@ impl TrayHost for TrayProfiles {
         let argument = self.selection().as_argument();
         if self.remembered.as_ref() != Some(&argument) {
             // Without a place to keep it in, the next start begins with the usual one.
-            let _ = last_profile::keep(&argument);
+            let _ = last_choice::keep_profile(&argument);
             self.remembered = Some(argument);
         }
     }

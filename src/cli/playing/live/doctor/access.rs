@@ -1,0 +1,275 @@
+//! What this user may open: virtual devices, pads, input devices; and the rules that allow it.
+
+use std::fs;
+use std::path::Path;
+
+use rustix::fs::{Access, access};
+
+use super::check::Check;
+use crate::cli::playing::live::devices::{ListedDevice, input_devices};
+use crate::cli::printing::written::{printable, quoted};
+use tactpad::bridge::sink::uinput;
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::bridge::transport::firmware::{OLDEST, dotted};
+use tactpad::bridge::transport::pads::{self, Attachment, FoundPad};
+
+/// The rules that give the player access; a test holds their number below that of the seat's.
+pub(super) const RULES: &str = include_str!("../../../../../docs/linux/70-tactpad.rules");
+
+/// Where the rules belong.
+const RULES_FILE: &str = "/etc/udev/rules.d/70-tactpad.rules";
+
+/// Seats are given out by a file of this number; what a later file tags has no effect.
+const SEAT_NUMBER: u32 = 73;
+
+pub(super) fn install_rules() -> String {
+    format!(
+        "tactpad doctor --udev-rules | sudo tee {RULES_FILE} && sudo udevadm control --reload && sudo udevadm trigger"
+    )
+}
+
+pub(super) fn check_uinput() -> Check {
+    let name = "virtual devices";
+    match uinput::available() {
+        Ok(()) => Check::good(name, "/dev/uinput can be written"),
+        Err(_) if !Path::new("/dev/uinput").exists() => Check::bad(
+            name,
+            "/dev/uinput is not there: the kernel's module is not loaded",
+            "sudo modprobe uinput && echo uinput | sudo tee /etc/modules-load.d/tactpad.conf",
+        ),
+        Err(_) => Check::bad(name, "/dev/uinput cannot be written by you", install_rules()),
+    }
+}
+
+/// Rules that come after the seat's are the classic mistake: they look right and do nothing.
+pub(super) fn check_rules(root: &Path) -> Check {
+    let name = "udev rules";
+    let folders = ["etc/udev/rules.d", "usr/lib/udev/rules.d", "lib/udev/rules.d"];
+    let files =
+        folders.iter().flat_map(|folder| fs::read_dir(root.join(folder)).into_iter().flatten().flatten());
+    let mut ours: Vec<_> = files
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .filter(|file| file.contains("tactpad"))
+        .collect();
+    ours.sort();
+    match ours.first() {
+        None => Check {
+            mend: Some(install_rules()),
+            ..Check::note(name, "none are installed; this lets you play without root")
+        },
+        Some(file) if number(file).is_none_or(|number| number >= SEAT_NUMBER) => Check::bad(
+            name,
+            format!("{file} comes after {SEAT_NUMBER}-seat-late.rules, so its uaccess tags have no effect"),
+            format!("sudo rm /etc/udev/rules.d/{file} && {}", install_rules()),
+        ),
+        Some(file) => Check::good(name, format!("{file} is installed")),
+    }
+}
+
+fn number(file: &str) -> Option<u32> {
+    file.split('-').next()?.parse().ok()
+}
+
+/// What this user may not open that playing with the pad at `address` needs, each with the command that mends it.
+pub(in crate::cli::playing::live) fn denied(address: &PadAddress) -> Vec<(String, String)> {
+    let mut checks = vec![check_uinput()];
+    match address {
+        PadAddress::Auto { .. } | PadAddress::Hid { .. } | PadAddress::Usb { .. } => {
+            checks.extend(pads::attached().iter().map(check_pad));
+        }
+        PadAddress::Described { name, path, .. } if !path.as_deref().is_some_and(is_port) => {
+            let is_meant = |device: &ListedDevice| {
+                device.source == *name && path.as_ref().is_none_or(|path| *path == device.path)
+            };
+            checks.extend(check_input_devices(
+                &input_devices().into_iter().filter(is_meant).collect::<Vec<_>>(),
+            ));
+        }
+        PadAddress::Serial { path, .. } | PadAddress::Described { path: Some(path), .. } => {
+            checks.push(check_port(path));
+        }
+        PadAddress::Virtual | PadAddress::Described { .. } | PadAddress::Capture { .. } => {}
+    }
+    checks.into_iter().filter_map(|check| Some((check.message, check.mend?))).collect()
+}
+
+fn is_port(path: &str) -> bool {
+    !path.starts_with("/dev/input/")
+}
+
+/// A serial port of any device, which the rules do not know.
+fn check_port(path: &str) -> Check {
+    let node = Path::new(path);
+    if !node.exists() || access(node, Access::READ_OK | Access::WRITE_OK).is_ok() {
+        return Check::good("pad", format!("{path} may be opened, or is not there yet"));
+    }
+    let message = format!("{path} may not be opened by you; until it is unplugged this lets you");
+    Check::bad("pad", message, format!("sudo setfacl -m u:$USER:rw {}", quoted(path)))
+}
+
+pub(super) fn check_pads(pads: &[FoundPad]) -> Vec<Check> {
+    if pads.is_empty() {
+        let mend = Some("tactpad demo".into());
+        return vec![Check { mend, ..Check::note("pad", "none is attached; this plays without one") }];
+    }
+    let of_pad = |pad: &FoundPad| [Some(check_pad(pad)), check_firmware(pad)];
+    pads.iter().flat_map(of_pad).flatten().collect()
+}
+
+fn check_pad(pad: &FoundPad) -> Check {
+    let path = pad.path.display();
+    // Not opened: that would reset some boards, and disturb a bridge that plays on it.
+    match access(&pad.path, Access::READ_OK | Access::WRITE_OK) {
+        Ok(()) => Check::good("pad", format!("{path} may be opened")),
+        Err(_) => Check::bad("pad", format!("{path} may not be opened by you"), install_rules()),
+    }
+}
+
+/// The firmware of a pad, if it is one of ours.
+pub(super) fn check_firmware(pad: &FoundPad) -> Option<Check> {
+    let (name, path, firmware) = ("firmware", pad.path.display(), pad.firmware.as_ref()?);
+    let message = printable(&format!("{path} has {firmware}"));
+    if firmware.is_old() {
+        let begin = match pad.attachment {
+            Attachment::Serial => format!(" && stty -F {path} 1200"),
+            Attachment::Hid => "   (and hold BOOTSEL while you plug the board in)".into(),
+        };
+        let message = format!(
+            "{message}, which is older than the wire's specification, all of which {} has; build a new one, and copy tactpad-pico.uf2 to \
+             the drive that appears",
+            dotted(OLDEST)
+        );
+        return Some(Check::bad(name, message, format!("firmware-proto/pico/build{begin}")));
+    }
+    Some(match &firmware.restarted {
+        Some(_) => Check::note(name, format!("{message}: it began anew by itself")),
+        None => Check::good(name, message),
+    })
+}
+
+/// Input devices that can be played with, whether they may be read, and whether their batteries will last.
+pub(super) fn check_input_devices(fitting: &[ListedDevice]) -> Vec<Check> {
+    let check = |device: &ListedDevice| {
+        let what = printable(&format!("{}, which fits {},", device.name, device.source));
+        match (device.lack(), device.mend()) {
+            (Some(lack), mend) => Check {
+                mend,
+                ..Check::note("input device", format!("{what} {lack}; until it is unplugged this lets you"))
+            },
+            (None, _) => Check::good(
+                "input device",
+                printable(&format!("{} plays with --pad {}", device.name, device.address)),
+            ),
+        }
+    };
+    fitting.iter().flat_map(|device| [Some(check(device)), check_battery(device)]).flatten().collect()
+}
+
+/// The battery of an input device, if it has one that says how it is.
+pub(super) fn check_battery(device: &ListedDevice) -> Option<Check> {
+    let (name, battery) = ("battery", device.battery?);
+    let message = printable(&format!("{} has its {battery}", device.name));
+    Some(if battery.is_low() {
+        Check::note(
+            name,
+            format!("{message}, which is low: put fresh ones in before the device leaves the game"),
+        )
+    } else {
+        Check::good(name, message)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use tactpad::bridge::transport::evdev::battery::Battery;
+    use tactpad::bridge::transport::firmware::Firmware;
+
+    use super::super::check::Finding;
+    use super::*;
+
+    #[test]
+    fn input_devices_that_play_are_named_and_hidden_ones_are_told_of() {
+        let device = |is_readable: bool, unreadable_reports: Option<&str>| ListedDevice {
+            address: "tablet:/dev/input/event5".into(),
+            path: "/dev/input/event5".into(),
+            name: "Pen".into(),
+            source: "tablet".into(),
+            is_readable,
+            unreadable_reports: unreadable_reports.map(str::to_owned),
+            battery: None,
+        };
+        let raw = Some("/dev/hidraw3");
+        let checks = check_input_devices(&[
+            device(true, None),
+            device(false, None),
+            device(true, raw),
+            device(false, raw),
+        ]);
+        let told: Vec<_> = checks.iter().map(|check| check.message.as_str()).collect();
+        assert_eq!(told[0], "Pen plays with --pad tablet:/dev/input/event5");
+        let hidden = "Pen, which fits tablet, may not be read by you; until it is unplugged this lets you";
+        assert_eq!([told[1], told[3]], [hidden; 2]);
+        assert!(told[2].contains("its own reports"), "{}", told[2]);
+        let mends: Vec<_> = checks.iter().map(|check| check.mend.as_deref()).collect();
+        let command = |nodes: &str| Some(format!("sudo setfacl -m u:$USER:r {nodes}"));
+        let wanted = [
+            None,
+            command("/dev/input/event5"),
+            command("/dev/hidraw3"),
+            command("/dev/input/event5 /dev/hidraw3"),
+        ];
+        assert_eq!(mends, wanted.each_ref().map(Option::as_deref));
+        assert_eq!(check_input_devices(&[]), []);
+        let found = |battery| {
+            let checks =
+                check_input_devices(&[ListedDevice { battery: Some(battery), ..device(true, None) }]);
+            checks.into_iter().map(|check| (check.name, check.finding)).collect::<Vec<_>>()
+        };
+        assert_eq!(found(Battery::Volts(5.2))[1], ("battery", Finding::Good));
+        assert_eq!(found(Battery::Percent(9))[1], ("battery", Finding::Note));
+    }
+
+    #[test]
+    fn an_old_firmware_is_told_with_the_way_to_a_new_one() {
+        let pad = |attachment, product: &str| FoundPad {
+            attachment,
+            path: "/dev/ttyACM0".into(),
+            ids: (0x1209, 0x0001),
+            serial_number: None,
+            usb_interface: None,
+            firmware: Firmware::of(product),
+        };
+        let check = |attachment, product: &str| check_firmware(&pad(attachment, product));
+        let found = |product: &str| check(Attachment::Serial, product).map(|it| it.finding);
+        assert_eq!(found("Pico"), None);
+        assert_eq!(found("tactpad pad 0.1.0"), Some(Finding::Good));
+        assert_eq!(found("tactpad pad 0.1.0 (restarted: stood still)"), Some(Finding::Note));
+        for (attachment, way) in
+            [(Attachment::Serial, "stty -F /dev/ttyACM0 1200"), (Attachment::Hid, "BOOTSEL")]
+        {
+            let old = check(attachment, "tactpad pad 0.0.9").unwrap();
+            assert_eq!(old.finding, Finding::Bad);
+            assert!(old.message.contains("0.0.9, which is older") && old.mend.unwrap().contains(way));
+        }
+    }
+
+    #[test]
+    fn the_shipped_rules_come_before_the_seats() {
+        let file = Path::new(RULES_FILE).file_name().unwrap().to_str().unwrap();
+        assert!(number(file).unwrap() < SEAT_NUMBER);
+        assert_eq!(RULES.matches("TAG+=\"uaccess\"").count(), 4);
+    }
+
+    #[test]
+    fn rules_that_come_too_late_are_found() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = root.path().join("etc/udev/rules.d");
+        fs::create_dir_all(&folder).unwrap();
+        assert_eq!(check_rules(root.path()).finding, Finding::Note);
+        for (file, finding) in [("99-tactpad.rules", Finding::Bad), ("70-tactpad.rules", Finding::Good)] {
+            fs::write(folder.join(file), "").unwrap();
+            assert_eq!(check_rules(root.path()).finding, finding, "{file}");
+            fs::remove_file(folder.join(file)).unwrap();
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! The running bridge, and what a killed one left.
+
+use std::io;
+
+use serde_json::Value;
+
+use super::check::Check;
+use crate::cli::playing::live::ctl;
+use crate::cli::playing::live::runtime::BridgeName;
+use tactpad::bridge::sink::x11::LeftDown;
+
+/// The nodes of a bridge's devices, as `event7`, by its status.
+pub(super) fn own_nodes(status: &str) -> Vec<String> {
+    let status: Value = serde_json::from_str(status).unwrap_or_default();
+    let output = status.get("output").and_then(Value::as_str).unwrap_or_default();
+    let words = output.split([' ', ',']);
+    words.filter_map(|word| word.strip_prefix("/dev/input/")).map(str::to_owned).collect()
+}
+
+pub(super) fn check_bridge(answer: &io::Result<String>, name: Option<&BridgeName>) -> Check {
+    match answer {
+        Ok(status) => {
+            let name = name.map(|name| format!(" --name {name}")).unwrap_or_default();
+            Check {
+                mend: Some(format!("tactpad ctl status{name}")),
+                ..Check::good("bridge", bridge_message(status))
+            }
+        }
+        Err(error) if error.kind() == io::ErrorKind::TimedOut => Check::note(
+            "bridge",
+            "one is there and does not answer: if it was stopped, continue it with `fg`",
+        ),
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
+            Check::note("bridge", format!("none can be asked: {error}"))
+        }
+        Err(_) => Check { mend: Some("tactpad run".into()), ..Check::note("bridge", "none is running") },
+    }
+}
+
+/// What a killed bridge left down. The next start lifts it, too.
+pub(super) fn check_left_down(left: &LeftDown) -> Check {
+    let name = "X11 keys";
+    match left {
+        LeftDown::Held { .. } => Check::bad(name, left.to_string(), "tactpad ctl panic"),
+        LeftDown::Unanswered { .. } | LeftDown::Damaged { .. } => Check::note(name, left.to_string()),
+    }
+}
+
+/// The status of a bridge in a sentence.
+fn bridge_message(status: &str) -> String {
+    let status: Value = serde_json::from_str(status).unwrap_or_default();
+    let text = |key: &str| status.get(key).and_then(Value::as_str).unwrap_or("unknown");
+    let warning = ctl::warning(&status).map(|warning| format!(" ({warning})")).unwrap_or_default();
+    let (profile, decoder) = (text("profile"), text("decoder"));
+    format!("one is running, profile {profile}, decoder {decoder}{warning}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_bridge_warns_of_is_told() {
+        let message = bridge_message(r#"{"warning": {"kind": "silent_channel", "channel": "m1z"}}"#);
+        assert!(message.contains("channel m1z does not answer"), "{message}");
+        assert!(!bridge_message(r#"{"warning": null}"#).contains('('));
+    }
+}

@@ -39,5 +39,6 @@ mod stranger;
 #[path = "../support/mod.rs"]
 mod support;
 mod tray;
+mod wayland;
 mod weighing;
 mod x11;

@@ -73,7 +73,7 @@ impl Programs {
 }
 
 /// A profile of one's own that is for a program.
-fn write_profile(folder: &Path, file: &str, name: &str, program: &str) {
+pub(crate) fn write_profile(folder: &Path, file: &str, name: &str, program: &str) {
     let own = folder.join("tactpad/profiles");
     fs::create_dir_all(&own).unwrap();
     let text =
@@ -82,14 +82,14 @@ fn write_profile(folder: &Path, file: &str, name: &str, program: &str) {
 }
 
 /// A bridge that follows the program in front, in an environment with these variables.
-fn follow(folder: tempfile::TempDir, environment: &[(&str, &str)]) -> Running {
+pub(crate) fn follow(folder: tempfile::TempDir, environment: &[(&str, &str)]) -> Running {
     let mut program = Running::program(env!("CARGO_BIN_EXE_tactpad"), folder.path());
     program.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").envs(environment.iter().copied());
     program.args(["run", "--pad", "virtual", "--profile", "auto:tetris", "--output", "none"]);
     Running::start(folder, program)
 }
 
-fn await_profile(bridge: &Running, name: &str, why: &str) {
+pub(crate) fn await_profile(bridge: &Running, name: &str, why: &str) {
     await_status(bridge, &format!("{name}: {why}"), |status| {
         let reason = status["profile_reason"].as_str();
         status["profile"] == name && reason.is_some_and(|reason| reason.contains(why))
@@ -139,7 +139,10 @@ fn where_the_program_in_front_cannot_be_known_it_is_said_with_the_way_out() {
     for (environment, why) in [
         (&[][..], "DISPLAY is not set"),
         (&[("DISPLAY", ":65000")][..], "cannot be known"),
-        (&[("DISPLAY", ":65000"), ("WAYLAND_DISPLAY", "wayland-0")][..], "Wayland tells no program"),
+        (
+            &[("DISPLAY", ":65000"), ("WAYLAND_DISPLAY", "wayland-0")][..],
+            "the Wayland compositor does not answer",
+        ),
     ] {
         let bridge = follow(tempfile::tempdir().unwrap(), environment);
         await_profile(&bridge, "Tetris", why);

@@ -197,7 +197,7 @@ impl Follower {
             self.looks_without_desktop = 0;
             self.desktop = WindowSystem::open();
         }
-        let front = self.desktop.as_ref().map_err(String::clone).and_then(WindowSystem::front);
+        let front = self.desktop.as_mut().map_err(|why| why.clone()).and_then(WindowSystem::front);
         if let Err(why) = &front {
             self.desktop = Err(why.clone());
         }

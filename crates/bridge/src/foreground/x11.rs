@@ -1,8 +1,6 @@
-//! Which program is in front: the one whose window has the keyboard, as the X server tells it.
+//! The program in front, as an X server tells it: its own, XWayland's for what runs on that, or gamescope's.
 
-use std::env;
 use std::fs;
-use std::path::PathBuf;
 
 use x11rb::connection::Connection;
 use x11rb::errors::{ConnectionError, ReplyError};
@@ -10,76 +8,87 @@ use x11rb::properties::WmClass;
 use x11rb::protocol::xproto::{Atom, AtomEnum, ConnectionExt as _, Window};
 use x11rb::rust_connection::RustConnection;
 
+use super::program::{Foreground, OwnProgram};
+
 /// A toolkit may give the keyboard to a window inside the one that says whose it is; that is so many windows above it at most.
 const WINDOWS_ABOVE_MAX: usize = 16;
 
-/// The window that has the keyboard.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Foreground {
-    /// None has it, or one that says nothing of itself.
-    Unknown,
-    /// One of this program.
-    OwnProgram,
-    /// One of another program.
-    Program {
-        /// The words of its class (`WM_CLASS`).
-        classes: Vec<String>,
-        /// The path of the executable that its process runs, if that can be known.
-        executable: Option<String>,
-    },
+/// So many numbers of a property are read at most.
+const NUMBERS_MAX: u32 = 3 * 256;
+
+/// What gamescope, which has no window manager beside it, tells on the root window of its first X server.
+struct Gamescope {
+    /// The window in front.
+    focused: Atom,
+    /// Three numbers for each window: it, Steam's number of the game, and its process.
+    windows: Atom,
+}
+
+/// A window that gamescope has in front.
+struct GamescopeWindow {
+    window: Window,
+    process: Option<u32>,
 }
 
 /// A connection to the X server that is asked for the program in front.
-pub struct WindowSystem {
+pub(super) struct XServer {
     connection: RustConnection,
     root: Window,
     active_window: Atom,
     process: Atom,
     machine: Atom,
-    own: Option<PathBuf>,
+    gamescope: Gamescope,
+    own: OwnProgram,
 }
 
-/// Why nobody can tell which program is in front, and the way out, in one sentence.
-fn unknown(why: &str) -> String {
-    format!("which program is in front cannot be known ({why}): choose with `tactpad ctl profile NAME`")
-}
-
-impl WindowSystem {
+impl XServer {
     /// Connects to the X server of the environment.
     ///
     /// # Errors
-    /// There is none, or this is a Wayland session: that tells nobody which window has the keyboard. The text is for people.
-    pub fn open() -> Result<Self, String> {
-        let is_set = |name: &str| env::var_os(name).is_some_and(|value| !value.is_empty());
-        if is_set("WAYLAND_DISPLAY") {
-            return Err(unknown("Wayland tells no program"));
-        }
-        if !is_set("DISPLAY") {
-            return Err(unknown("DISPLAY is not set"));
-        }
-        let (connection, screen) = x11rb::connect(None).map_err(|error| unknown(&error.to_string()))?;
-        Self::on(connection, screen).map_err(|error| unknown(&error.to_string()))
+    /// There is none.
+    pub(super) fn open(own: OwnProgram) -> Result<Self, String> {
+        let (connection, screen) = x11rb::connect(None).map_err(|error| error.to_string())?;
+        Self::on(connection, screen, own).map_err(|error| error.to_string())
     }
 
-    fn on(connection: RustConnection, screen: usize) -> Result<Self, ReplyError> {
-        let atom = |name: &[u8]| connection.intern_atom(false, name)?.reply().map(|reply| reply.atom);
-        let active_window = atom(b"_NET_ACTIVE_WINDOW")?;
-        let process = atom(b"_NET_WM_PID")?;
-        let machine = atom(b"WM_CLIENT_MACHINE")?;
+    fn on(connection: RustConnection, screen: usize, own: OwnProgram) -> Result<Self, ReplyError> {
+        let atom =
+            |name: &str| connection.intern_atom(false, name.as_bytes())?.reply().map(|reply| reply.atom);
+        let active_window = atom("_NET_ACTIVE_WINDOW")?;
+        let process = atom("_NET_WM_PID")?;
+        let machine = atom("WM_CLIENT_MACHINE")?;
+        let gamescope = Gamescope {
+            focused: atom("GAMESCOPE_FOCUSED_WINDOW")?,
+            windows: atom("GAMESCOPE_FOCUSABLE_WINDOWS")?,
+        };
         let root = connection.setup().roots.get(screen).map_or(x11rb::NONE, |screen| screen.root);
-        Ok(Self { root, active_window, process, machine, own: env::current_exe().ok(), connection })
+        Ok(Self { root, active_window, process, machine, gamescope, own, connection })
     }
 
     /// Who has the keyboard now.
     ///
     /// # Errors
-    /// The X server does not answer any more; the text is for people.
-    pub fn front(&self) -> Result<Foreground, String> {
-        self.asked().map_err(|error| unknown(&error.to_string()))
+    /// The X server does not answer any more.
+    pub(super) fn front(&self) -> Result<Foreground, String> {
+        self.asked().map_err(|error| error.to_string())
+    }
+
+    /// Whether gamescope keeps this server's windows.
+    pub(super) fn is_gamescope(&self) -> bool {
+        passed(self.numbers(self.root, self.gamescope.windows))
+            .ok()
+            .flatten()
+            .is_some_and(|it| !it.is_empty())
     }
 
     fn asked(&self) -> Result<Foreground, ReplyError> {
-        let mut window = self.focused()?;
+        let mut window = match self.chosen_by_gamescope()? {
+            Some(GamescopeWindow { process: Some(process), .. }) if process > 0 => {
+                return Ok(self.own.or_program(Vec::new(), Some(process)));
+            }
+            Some(GamescopeWindow { window, .. }) => window,
+            None => self.focused()?,
+        };
         // Windows come and go while one asks: what is gone says nothing.
         for _ in 0..WINDOWS_ABOVE_MAX {
             if window <= 1 || window == self.root {
@@ -113,15 +122,8 @@ impl WindowSystem {
         if classes.is_empty() && id.is_none() {
             return Ok(None);
         }
-        let path = match id {
-            Some(id) if self.is_here(window)? => fs::read_link(format!("/proc/{id}/exe")).ok(),
-            _ => None,
-        };
-        if path.is_some() && path == self.own {
-            return Ok(Some(Foreground::OwnProgram));
-        }
-        let executable = path.map(|path| path.to_string_lossy().trim_end_matches(" (deleted)").to_owned());
-        Ok(Some(Foreground::Program { classes, executable }))
+        let is_here = id.is_some() && self.is_here(window)?;
+        Ok(Some(self.own.or_program(classes, id.filter(|_| is_here))))
     }
 
     /// Whether a window's program runs on this machine: the number of another machine's process means nothing here.
@@ -132,6 +134,23 @@ impl WindowSystem {
         let told = String::from_utf8_lossy(&told);
         let told = told.trim_end_matches('\0');
         Ok(told.is_empty() || told == here.trim())
+    }
+
+    /// The window that gamescope has in front, on whichever of its X servers that is.
+    fn chosen_by_gamescope(&self) -> Result<Option<GamescopeWindow>, ReplyError> {
+        let focused = passed(self.numbers(self.root, self.gamescope.focused))?.unwrap_or_default();
+        let Some(window) = focused.first().copied().filter(|window| *window != x11rb::NONE) else {
+            return Ok(None);
+        };
+        let windows = passed(self.numbers(self.root, self.gamescope.windows))?.unwrap_or_default();
+        let process = windows.chunks_exact(3).find(|it| it[0] == window).map(|it| it[2]);
+        Ok(Some(GamescopeWindow { window, process }))
+    }
+
+    fn numbers(&self, window: Window, name: Atom) -> Result<Vec<u32>, ReplyError> {
+        let kind = AtomEnum::CARDINAL;
+        let property = self.connection.get_property(false, window, name, kind, 0, NUMBERS_MAX)?.reply()?;
+        Ok(property.value32().map_or(Vec::new(), Iterator::collect))
     }
 
     fn number(&self, window: Window, name: Atom, kind: Atom) -> Result<Option<u32>, ReplyError> {

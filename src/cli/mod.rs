@@ -107,7 +107,9 @@ fn obey(verb: &Verb) -> Result<(), Failure> {
 
 #[cfg(test)]
 mod tests {
-    use clap::Command;
+    use std::any::TypeId;
+
+    use clap::{Arg, Command};
 
     use super::*;
 
@@ -136,6 +138,51 @@ mod tests {
                 assert_eq!(long, None, "{name}");
             }
         }
+    }
+
+    /// Whether the values of an argument are numbers, or lists of them.
+    fn takes_numbers(argument: &Arg) -> bool {
+        const LISTS: [&str; 4] = ["R1,R2,R3", "N,N", "A-B", "X,Y"];
+        let kind = argument.get_value_parser().type_id();
+        let numbers = [TypeId::of::<f64>(), TypeId::of::<u64>(), TypeId::of::<u32>(), TypeId::of::<usize>()];
+        let names = argument.get_value_names().unwrap_or_default();
+        numbers.iter().any(|it| kind == *it) || names.iter().any(|name| LISTS.contains(&name.as_str()))
+    }
+
+    /// The words of a command line that gives an argument this value.
+    fn line(name: &str, argument: &Arg, value: &str) -> Vec<String> {
+        let mut words: Vec<String> = name.split(' ').map(str::to_owned).collect();
+        match (argument.get_long(), argument.get_index()) {
+            (Some(long), _) => words.push(format!("--{long}={value}")),
+            (None, index) => {
+                words.extend((1..index.unwrap_or(1)).map(|_| "anything".to_owned()));
+                words.push(value.to_owned());
+            }
+        }
+        words
+    }
+
+    #[test]
+    fn a_number_that_is_mistyped_is_told_what_can_be_written() {
+        let mut whole = command();
+        whole.build();
+        let mut commands = Vec::new();
+        all(&whole, "", &mut commands);
+        let mut count = 0;
+        for (name, command) in &commands {
+            for argument in command.get_arguments().filter(|it| takes_numbers(it)) {
+                count += 1;
+                for value in ["", "many", "7q", "1.2.3", "7 apples", "1e999"] {
+                    let words = line(name, argument, value);
+                    let error = whole.clone().try_get_matches_from(&words).unwrap_err().to_string();
+                    let told = error.lines().next().unwrap_or_default();
+                    let sentence = told.split(": write ").nth(1);
+                    let is_example = |it: &str| it.contains(" as ") || it.contains(" or more");
+                    assert!(sentence.is_some_and(is_example), "{words:?}: {error}");
+                }
+            }
+        }
+        assert!(count > 20, "{count} numbers");
     }
 
     #[test]

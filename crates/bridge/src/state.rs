@@ -108,7 +108,7 @@ impl State {
             Self::Taring => "measuring the zero: leave the pad untouched for a moment",
             Self::Loaded => "lift the finger: the zero is measured when nothing lies on the pad",
             Self::Unweighed => {
-                "waits for you to stand still: a second on the board tells your weight, and nothing is pressed before"
+                "stand still on the board: a second of that tells your weight, and nothing is pressed before"
             }
             Self::Playing => "playing",
             Self::Weighing => {

@@ -18,8 +18,8 @@ pub(crate) struct PadOptions {
     /// A device file; without it the nominal pad, whose file is models/sstid.toml.
     #[arg(long, value_name = "FILE")]
     device: Option<PathBuf>,
-    /// A file of tables that say how this pad differs from the device (models/README.md), or paper: those that come out
-    /// as the paper's figures.
+    /// A file of tables that say how this pad differs from the device (models/README.md), or the word paper: those
+    /// that reproduce the paper's figures.
     #[arg(long, value_name = "FILE")]
     imperfections: Option<PathBuf>,
 }

@@ -28,7 +28,7 @@ pub(crate) struct LabelOptions {
     /// What the columns fx, fy, fz hold, as "fx,fy,-fz". Forces are the finger's on the plate, and pressing in is +fz.
     #[arg(long, value_name = "SIGN", allow_hyphen_values = true)]
     sign: Option<Sign>,
-    /// Units of places, forces and channels, as "in,lbf,mV"; mm,N,uV without.
+    /// Units of places, forces and channels, as "in,lbf,mV"; without it mm,N,uV.
     #[arg(long, value_name = "UNITS")]
     units: Option<Units>,
 }

@@ -11,6 +11,7 @@ use crate::cli::files::decoder_file;
 use crate::cli::files::destination::{Destination, Folder};
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
+use crate::cli::number;
 use crate::cli::printing::pictures;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{both_print, is_stdout, tell};
@@ -29,8 +30,8 @@ pub(crate) struct Arguments {
     /// The network to write, as ONNX; a file that is there is replaced, and - is standard output.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Draws contacts, split, first weights and order: the same seed gives the same file.
-    #[arg(long, default_value = "0")]
+    /// A number that contacts, split, first weights and order are drawn by: the same seed gives the same file.
+    #[arg(long, default_value = "0", value_parser = number::seed, allow_hyphen_values = true)]
     seed: u64,
     #[command(flatten)]
     pad: PadOptions,

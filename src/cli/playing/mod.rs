@@ -21,13 +21,13 @@ pub(super) enum Verb {
     /// Play with a virtual pad: nothing needs to be attached.
     #[cfg(target_os = "linux")]
     Demo(live::demo::Arguments),
-    /// Play: a pad in, key and gamepad events out.
+    /// Play: turn what a pad feels into key and gamepad events.
     #[cfg(target_os = "linux")]
     Run(live::run::Arguments),
     /// Measure a new pad for the first time: noise, a known weight, and which channel is wired where.
     #[cfg(target_os = "linux")]
     Bench(live::bench::Arguments),
-    /// Calibrate a pad at home: presses, a weight on five marks, and a sheet that shows them.
+    /// Calibrate a pad at home: press it all over, and put a weight on five marks, which --sheet prints.
     #[cfg(target_os = "linux")]
     Calibrate(live::calibrate::Arguments),
     /// Find by one known weight what gain a pad has lost, and keep it in its decoder.
@@ -50,9 +50,9 @@ pub(super) enum Verb {
     /// Record a pad, so that `replay` gives the same events again.
     #[cfg(target_os = "linux")]
     Record(live::record::Arguments),
-    /// Print the events that a capture, or a list of contacts, comes to.
+    /// Print the events that a capture, or a list of contacts, leads to.
     Replay(replay::Arguments),
-    /// Measure from pad bytes readable to event written, and where the time goes.
+    /// Measure how long it takes from the pad's bytes to the written event, and where that time goes.
     #[cfg(target_os = "linux")]
     Latency(live::latency::Arguments),
     /// Print a shell's completions of verbs and options.

@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// A CSV of measured contacts instead, all of whose loads are the weight: what its labels say of them does not count.
     #[arg(long, value_name = "TABLE.csv")]
     measured: Option<PathBuf>,
-    /// What `tactpad ctl weigh` found, instead of a file.
+    /// The factor that `tactpad ctl weigh` found, instead of a file.
     #[arg(
         long,
         value_name = "S",
@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     factor: Option<f64>,
-    /// And how sure it was of that, as a share.
+    /// How sure `tactpad ctl weigh` was of its factor: the deviation that it printed, a share such as 0.01 or 1%.
     #[arg(long, value_name = "SHARE", value_parser = number::share, requires = "factor", allow_hyphen_values = true)]
     deviation: Option<f64>,
     /// The decoder to write; a file that is there is replaced, and - is standard output.
@@ -139,14 +139,9 @@ impl Arguments {
         factor: f64,
         deviation: f64,
     ) -> Result<(Decoder, WeighReport), Failure> {
-        let unusable = |why: &str| Failure::Unusable(why.to_owned());
         if !is_possible(factor) {
-            return Err(unusable("--factor is what the pad reads over what it read, from 0.5 to 2"));
-        }
-        if !(deviation > 0.0 && deviation < 1.0) {
-            return Err(unusable(
-                "--deviation is a share above 0 and below 1, as `tactpad ctl weigh` tells it",
-            ));
+            let why = "--factor is what the pad reads over what it read, from 0.5 to 2";
+            return Err(Failure::Unusable(why.into()));
         }
         let now = kept(decoder, factor, deviation)
             .ok_or_else(|| self.refused(&self.decoder, FileError::Decoder))?;

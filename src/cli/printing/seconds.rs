@@ -7,12 +7,8 @@ const SECONDS_MAX: f64 = 86_400.0;
 
 /// Reads a duration in seconds. Clap calls it before the verb begins, so before any file is touched.
 pub(crate) fn parse(text: &str) -> Result<f64, String> {
-    let seconds = number::read(text, &["seconds", "s"], "").unwrap_or(f64::NAN);
-    if seconds > 0.0 && seconds <= SECONDS_MAX {
-        Ok(seconds)
-    } else {
-        Err(format!("write a number of seconds above 0 and up to {SECONDS_MAX}"))
-    }
+    let example = format_args!("a number of seconds above 0 and up to {SECONDS_MAX}, such as 20 or 0.5s");
+    number::read(text, &["seconds", "s"], |seconds| *seconds > 0.0 && *seconds <= SECONDS_MAX, example)
 }
 
 #[cfg(test)]

@@ -64,6 +64,34 @@ impl Diagnostic {
 /// After so many findings nobody reads on; the rest is told in one line.
 const FINDINGS_MAX: usize = 50;
 
+/// What is wrong with a bare word at the byte offset `at`, and the way out; `None` if the parser's message is of something else. A bare word
+/// is the usual slip, and the parser names what it took the word for.
+fn bare(text: &str, at: usize, message: &str) -> Option<(String, Option<String>)> {
+    let line = text.get(at..).unwrap_or_default().lines().next().unwrap_or_default();
+    let value = line.split(['#', ',', '}', ']']).next().unwrap_or_default().trim();
+    if ["true", "false"].iter().any(|small| value.eq_ignore_ascii_case(small)) {
+        return Some((
+            message.to_owned(),
+            Some(format!("write it in small letters: {}", value.to_ascii_lowercase())),
+        ));
+    }
+    if !message.contains("boolean") && !message.contains("must be quoted") {
+        return None;
+    }
+    if value.is_empty() {
+        return Some(("nothing stands behind the =".into(), Some("write a value there".into())));
+    }
+    let number = value.trim_end_matches(|c: char| !c.is_ascii_digit());
+    Some(if number.parse::<f64>().is_ok() {
+        (format!("{value} is no number"), Some(format!("write it without its unit: {number}")))
+    } else {
+        (
+            format!("{value} is neither a number nor text in quotation marks"),
+            Some(format!("write text in quotation marks: \"{value}\"")),
+        )
+    })
+}
+
 /// Findings about one text while it is read.
 pub(crate) struct Findings<'t> {
     text: &'t str,
@@ -88,18 +116,11 @@ impl<'t> Findings<'t> {
             return;
         }
         self.broken_lines.push(position(self.text, at).0);
-        // A bare word is the usual slip, and the parser names what it took the word for.
-        let is_word = message.contains("boolean") || message.contains("must be quoted");
-        let rest = self.text.get(at..).unwrap_or_default();
-        let word = rest.split(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or_default();
-        let help = if ["true", "false"].iter().any(|small| word.eq_ignore_ascii_case(small)) {
-            Some(format!("write it in small letters: {}", word.to_ascii_lowercase()))
-        } else if is_word {
-            Some("text stands in quotation marks".to_owned())
-        } else {
-            decimal_comma(self.text, at).map(|number| format!("write a decimal point: {number}"))
-        };
-        self.found.push(self.finding(Severity::Error, at, message.to_owned(), help));
+        let (message, help) = bare(self.text, at, message).unwrap_or_else(|| {
+            let comma = decimal_comma(self.text, at);
+            (message.to_owned(), comma.map(|number| format!("write a decimal point: {number}")))
+        });
+        self.found.push(self.finding(Severity::Error, at, message, help));
     }
 
     /// Notes an error of the text as a whole, which no line shows; an empty `help` is none.

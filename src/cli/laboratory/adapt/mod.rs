@@ -29,6 +29,7 @@ use crate::cli::files::destination::{Destination, Folder};
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::{field_of, flaws, solve};
 use crate::cli::files::labels::LabelOptions;
+use crate::cli::number;
 use crate::cli::printing::pictures;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, say, tell, written_over};
 use tactpad::counted::counted;
@@ -41,7 +42,7 @@ use tactpad::lab::tangent::SimulatedPad;
                   tactpad adapt --play game.cap --weights w.csv --out mine.decoder"
 )]
 pub(crate) struct Arguments {
-    /// How it is done; from play there is only inverse.
+    /// The method; a capture of play can be fitted by inverse alone.
     #[arg(long, value_name = "METHOD", required_unless_present = "play")]
     method: Option<Method>,
     /// A CSV of measured contacts with all nine channels, raw.
@@ -62,8 +63,8 @@ pub(crate) struct Arguments {
     /// Take N of the contacts only, drawn by the seed.
     #[arg(long, value_name = "N", value_parser = parse_rows, allow_hyphen_values = true)]
     rows: Option<usize>,
-    /// Draws what is random: the same seed gives the same file.
-    #[arg(long, default_value = "0")]
+    /// A number that all random draws follow from: the same seed gives the same file.
+    #[arg(long, default_value = "0", value_parser = number::seed, allow_hyphen_values = true)]
     seed: u64,
     /// The decoder to begin with: for scdf what train wrote, for inverse another pad's inverse decoder.
     ///
@@ -164,8 +165,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn parse_rows(text: &str) -> Result<usize, String> {
-    let rows = text.trim().parse().ok().filter(|rows| *rows > 0);
-    rows.ok_or_else(|| "write how many contacts to take, 1 or more; without --rows all are taken".into())
+    number::whole(
+        text,
+        &[],
+        1..=usize::MAX,
+        "how many contacts to take, 1 or more; without --rows all are taken",
+    )
 }
 
 impl Arguments {

@@ -91,12 +91,12 @@ impl Arguments {
 
 /// A share that a model may get wrong.
 fn model_error(text: &str) -> Result<f64, String> {
-    let percent = number::read(text, &["%"], "").unwrap_or(f64::NAN);
-    if (0.0..=50.0).contains(&percent) {
-        Ok(percent)
-    } else {
-        Err("write per cent from 0 to 50, as in 0.5".to_owned())
-    }
+    number::read(
+        text,
+        &["%"],
+        |percent| (0.0..=50.0).contains(percent),
+        "per cent from 0 to 50, such as 0.5 or 0.5%",
+    )
 }
 
 /// Where the file of an option goes: nowhere that is read, and not between the lines of a document or of another file.

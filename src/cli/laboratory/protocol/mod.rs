@@ -12,6 +12,7 @@ use crate::cli::failure::Failure;
 use crate::cli::files::destination::{Destination, Folder};
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::tables;
+use crate::cli::number;
 use crate::cli::printing::pictures;
 use crate::cli::printing::written::{both_print, is_stdout, tell};
 use tactpad::pad::device::Patch;
@@ -24,10 +25,10 @@ use tactpad::tables::plans::{self, REACH_S, distinct_places};
 #[command(after_help = "Example: tactpad protocol recommended --seed 1 --out plan.csv")]
 #[group(skip)]
 pub(crate) struct Arguments {
-    /// Which plan.
+    /// The plan to write.
     plan: Plan,
-    /// Draws the recommended plan; the same seed gives the same plan. The paper's plan is drawn from none.
-    #[arg(long, default_value = "0")]
+    /// A number that the recommended plan is drawn by: the same seed gives the same plan. Nothing in the paper's plan is drawn.
+    #[arg(long, default_value = "0", value_parser = number::seed, allow_hyphen_values = true)]
     seed: u64,
     /// The plan to write, as CSV; a file that is there is replaced, and - is standard output.
     #[arg(long, value_name = "FILE")]

@@ -18,6 +18,7 @@ use crate::cli::files::destination::{Destination, Folder};
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
 use crate::cli::files::tables;
+use crate::cli::number;
 use crate::cli::printing::pictures::write as pictures_of;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::summary::{ChannelReport, Summary};
@@ -45,8 +46,8 @@ pub(crate) struct Arguments {
     source: Source,
     #[command(flatten)]
     pad: PadOptions,
-    /// Draws the dataset; the same seed draws the same contacts.
-    #[arg(long, default_value = "0", conflicts_with = "contacts")]
+    /// A number that the dataset's draws follow from: the same seed draws the same contacts.
+    #[arg(long, default_value = "0", value_parser = number::seed, allow_hyphen_values = true, conflicts_with = "contacts")]
     seed: u64,
     /// The measured CSV to write; a file that is there is replaced, and - is standard output.
     #[arg(long, value_name = "FILE", requires = "Source")]

@@ -21,7 +21,7 @@ pub(crate) const NUMERICAL: &str = "a numerical twin: no hardware was measured";
                         The same pad 5,000 cycles later: tactpad twin --plan paper --state pad.life --out first.csv, then \
                         tactpad twin --plan paper --state pad.life --cycles 5000 --seed 1 --out later.csv\n\n\
                         Play: tactpad twin --plan play --seconds 120 --out game.cap, then tactpad replay game.cap\n\n\
-                        Without --device and --imperfections the pad has those that come out as the paper's figures."
+                        Without --device and --imperfections the pad has the imperfections that reproduce the paper's figures."
 )]
 pub(crate) struct Arguments {
     /// What is measured: paper or recommended, as `tactpad protocol` writes them, or a file of the same form. Or what a hand
@@ -30,9 +30,9 @@ pub(crate) struct Arguments {
     pub(super) plan: PathBuf,
     #[command(flatten)]
     pub(super) pad: PadOptions,
-    /// Draws what is random: the same seed gives the same file. Of a pad that --state takes up it draws the plan, the hand
-    /// and the rig, not the pad.
-    #[arg(long, default_value = "0")]
+    /// A number that all random draws follow from: the same seed gives the same file. With --state the plan, the
+    /// hand and the rig follow from it, not the pad.
+    #[arg(long, default_value = "0", value_parser = number::seed, allow_hyphen_values = true)]
     pub(super) seed: u64,
     /// The measured CSV, or the capture, to write; a file that is there is replaced, and - is standard output.
     #[arg(long, value_name = "FILE")]
@@ -43,23 +43,23 @@ pub(crate) struct Arguments {
     /// Takes up the pad's life where this file left it, if it is there, and writes it back: one pad in many runs.
     #[arg(long, value_name = "FILE")]
     pub(super) state: Option<PathBuf>,
-    /// Load the pad so many times before the plan begins, a second each.
-    #[arg(long, value_name = "N")]
+    /// How many times the pad is loaded before the plan begins, for a second each.
+    #[arg(long, value_name = "N", value_parser = parse_cycles, allow_hyphen_values = true)]
     pub(super) cycles: Option<u32>,
     /// Write the cycles of load up to each row as `cycle`, as a rig can count them: by them ageing is told.
     #[arg(long)]
     pub(super) count_cycles: bool,
-    /// Of play and presses: how long they go on, 120 where nothing is said.
+    /// With --plan play or presses: how many seconds it lasts, 120 without it.
     #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     pub(super) seconds: Option<f64>,
-    /// Of play and presses: a profile's name or file. It is what is played, and stays in the capture; super-mario where
-    /// nothing is said.
+    /// With --plan play or presses: the profile that is played and kept in the capture, by its name or file; super-mario
+    /// without it.
     #[arg(long)]
     pub(super) profile: Option<String>,
-    /// Of play and presses: touch no farther from the centre than this.
+    /// With --plan play or presses: touch no farther from the centre than this.
     #[arg(long, value_name = "MM", value_parser = number::millimetres, allow_hyphen_values = true)]
     pub(super) within_mm: Option<f64>,
-    /// Of play and presses: lay a weight of so many grams on five marks afterwards.
+    /// With --plan play or presses: lay a weight of this many grams on five marks afterwards.
     #[arg(long, value_name = "G", value_parser = number::grams, requires = "weights", allow_hyphen_values = true)]
     pub(super) weight_g: Option<f64>,
     /// With --weight-g: the CSV to write that says when the weight rested on which mark.
@@ -68,6 +68,10 @@ pub(crate) struct Arguments {
     /// Print one JSON document: what was made.
     #[arg(long)]
     pub(super) json: bool,
+}
+
+fn parse_cycles(text: &str) -> Result<u32, String> {
+    number::whole(text, &["cycles"], 0..=u32::MAX, "a whole number of cycles from 0 up, such as 5000")
 }
 
 impl Arguments {

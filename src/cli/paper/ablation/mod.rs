@@ -15,6 +15,7 @@ use crate::cli::files::destination::Folder;
 use crate::cli::files::device::PadOptions as PadFiles;
 use crate::cli::files::field::field_of;
 use crate::cli::laboratory::twin::NUMERICAL;
+use crate::cli::number;
 use crate::cli::printing::pictures;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::print_json;
@@ -30,13 +31,14 @@ use tactpad::plot::figure::Figure;
 /// Arguments of `tactpad ablation`.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tactpad ablation --seed 1 --out ablation\n\n\
-                  It takes one or two minutes. Without --device and --imperfections the pad has those that come out as the \
-                  paper's figures.")]
+                  It takes one or two minutes. Without --device and --imperfections the pad has the imperfections that \
+                  reproduce the paper's figures.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pad: PadFiles,
-    /// Draws what is random: the pad is calibrated with this seed; the contacts that are tried have the next two.
-    #[arg(long, default_value = "1")]
+    /// A number that all random draws follow from: the pad is calibrated with this seed; the contacts that
+    /// are tried have the next two.
+    #[arg(long, default_value = "1", value_parser = number::seed, allow_hyphen_values = true)]
     seed: u64,
     /// A network that train wrote, of this pad without its imperfections; else one is trained.
     #[arg(long, value_name = "FILE")]

@@ -38,26 +38,26 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "R1,R2,R3", value_parser = parse_radii, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["threshold", "noise_uv", "imperfections"])]
     radii: Option<Radii>,
-    /// Instead of the search: how well the same plate locates on so many modules at equal angles, one number or several.
+    /// Say instead how well the same plate locates on this number of modules at equal angles; several numbers are compared.
     #[arg(long, value_name = "N,N", value_parser = Counts::parse, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["radii", "threshold", "seed"])]
     modules: Option<Counts>,
     /// Share of a press that a module must carry to count as effective.
-    #[arg(long, value_name = "SHARE", default_value_t = THRESHOLD, value_parser = parse_share)]
+    #[arg(long, value_name = "SHARE", default_value_t = THRESHOLD, value_parser = number::share)]
     #[arg(allow_hyphen_values = true)]
     threshold: f64,
     /// Noise of each channel, standard deviation in microvolts.
     #[arg(long, value_name = "UV", default_value_t = NOISE_RMS_UV, value_parser = parse_noise)]
     #[arg(allow_hyphen_values = true)]
     noise_uv: f64,
-    /// How large and how thick the plate should be, instead: pads of 30 to 150 mm and 0.5 to 3 mm with these modules.
+    /// Say instead how large and how thick the plate should be: pads of 30 to 150 mm and 0.5 to 3 mm with these modules.
     #[arg(long, conflicts_with_all = ["radii", "threshold", "seed"])]
     sizes: bool,
     /// Write the device file of each of these pads into this folder, for simulate --device.
     #[arg(long, value_name = "DIR", requires = "sizes")]
     devices: Option<PathBuf>,
     /// The swarm's seed; the same seed gives the same answer.
-    #[arg(long, default_value_t = 1, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 1, value_parser = number::seed, allow_hyphen_values = true)]
     seed: u64,
     /// Write the figures layout-swarm, layout-scan and layout-regions into this folder, as SVG and PNG; with --radii layout-swarm
     /// alone; with --modules, layout-modules; with --sizes, size-sensitivity, size-error and size-frequency.
@@ -134,18 +134,9 @@ fn parse_radii(text: &str) -> Result<Radii, String> {
     Radii::new(radii_mm).map_err(|error| error.to_string())
 }
 
-fn parse_share(text: &str) -> Result<f64, String> {
-    let share = number::share(text).unwrap_or(f64::NAN);
-    if share > 0.0 && share < 1.0 { Ok(share) } else { Err("write a share above 0 and below 1".into()) }
-}
-
 fn parse_noise(text: &str) -> Result<f64, String> {
-    let noise_uv = number::read(text, &["uV", "µV"], "").unwrap_or(f64::NAN);
-    if noise_uv > 0.0 && noise_uv <= NOISE_MAX_UV {
-        Ok(noise_uv)
-    } else {
-        Err(format!("write a number of microvolts above 0 and up to {NOISE_MAX_UV}"))
-    }
+    let example = format_args!("microvolts above 0 and up to {NOISE_MAX_UV}, such as 6 or 6uV");
+    number::read(text, &["uV", "µV"], |uv| *uv > 0.0 && *uv <= NOISE_MAX_UV, example)
 }
 
 #[cfg(test)]
@@ -173,11 +164,8 @@ mod tests {
     }
 
     #[test]
-    fn shares_and_noise_have_their_ranges() {
-        assert_eq!((parse_share("0.01"), parse_noise("6")), (Ok(0.01), Ok(6.0)));
-        for text in ["0", "1", "-0.1", "nan", "", "1%"] {
-            assert!(parse_share(text).is_err(), "{text}");
-        }
+    fn noise_has_its_range() {
+        assert_eq!((parse_noise("6"), parse_noise("6,5 µV")), (Ok(6.0), Ok(6.5)));
         for text in ["0", "-6", "nan", "inf", "", "1e7"] {
             assert!(parse_noise(text).is_err(), "{text}");
         }

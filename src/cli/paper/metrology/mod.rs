@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     measured: Option<PathBuf>,
     /// The twin's seeds, from the first one to the last one: each is another pad, measured anew.
     ///
-    /// The imperfections that come out as the paper's figures were fitted by the seeds 1 to 10, so others are shown.
+    /// The imperfections that reproduce the paper's figures were fitted with the seeds 1 to 10, so other seeds are shown.
     #[arg(long, value_name = "A-B", default_value = "11-40", value_parser = parse_seeds)]
     #[arg(conflicts_with = "measured")]
     seeds: RangeInclusive<u64>,

@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// What the bridge is doing.
+    /// Say what the bridge is doing.
     #[command(after_help = "Example: tactpad ctl status --json")]
     Status,
     /// Print one line of JSON for each press that is accepted or rejected, until the bridge ends.
@@ -60,8 +60,8 @@ enum Action {
     Tare,
     /// Put a known weight on the plate: it tells what gain the pad has lost, and forces are corrected by it.
     ///
-    /// Begin with nothing on the plate. Anywhere will do, for three seconds; nothing is pressed meanwhile. It counts until the pad is
-    /// unplugged, and at the end it says how to keep it for good.
+    /// Begin with nothing on the plate. Then let the weight rest for three seconds, anywhere on the plate; nothing is
+    /// pressed in the game meanwhile. It counts until the pad is unplugged, and at the end it says how to keep it for good.
     #[command(after_help = "Example: tactpad ctl weigh 200")]
     Weigh {
         /// The weight, in grams.

@@ -40,9 +40,9 @@ const NICENESS: i32 = 10;
 /// Whether play is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum KeepPlay {
-    /// It is.
+    /// Play is kept.
     Yes,
-    /// It is not.
+    /// No play is kept.
     No,
 }
 

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 
 use crate::cli::failure::Failure;
+use crate::cli::number;
 use crate::cli::printing::written::stdout;
 use tactpad::pipeline::mapping::read::shipped;
 
@@ -41,7 +42,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// Names of the profiles: those inside the program, and your own.
+    /// List the profiles: those inside the program, and your own.
     #[command(after_help = "Example: tactpad profile list")]
     List {
         /// Print one JSON document.
@@ -94,7 +95,7 @@ enum Action {
         /// A name from `profile list`.
         name: String,
     },
-    /// The last 20 saves of a profile of your own, the newest first, with what changed.
+    /// List the last 20 saves of a profile of your own, the newest first, with what changed.
     #[command(after_help = "Example: tactpad profile history contra")]
     History {
         /// A profile of your own, also one that was deleted.
@@ -109,9 +110,9 @@ enum Action {
         /// A profile of your own, also one that was deleted.
         name: String,
         /// The save's number in `profile history`; without it the one before the present, or the last of a deleted profile.
-        #[arg(conflicts_with = "shipped")]
+        #[arg(conflicts_with = "shipped", value_parser = parse_save, allow_negative_numbers = true)]
         number: Option<usize>,
-        /// As the profile of this name inside the program is.
+        /// Bring back the profile of this name inside the program instead.
         #[arg(long)]
         shipped: bool,
     },
@@ -155,6 +156,16 @@ enum Action {
         Profiles begin with the line `#:schema ./profile.schema.json`. Editors with Taplo or Even Better TOML then \
         complete and check keys where the schema lies beside the profile.")]
     Schema,
+}
+
+/// The number of a save.
+fn parse_save(text: &str) -> Result<usize, String> {
+    number::whole(
+        text,
+        &[],
+        1..=usize::MAX,
+        "the number of a save as `tactpad profile history` shows it, 1 or more",
+    )
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {

@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// Names of the descriptions inside the program.
+    /// List the descriptions inside the program.
     #[command(after_help = "Example: tactpad source list")]
     List {
         /// Print one JSON document.

@@ -7,6 +7,7 @@ use clap::Args;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::recording::{Profiles, Recording};
+use crate::cli::number;
 use crate::cli::playing::profile::ProfileDestination;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, written_over};
@@ -38,8 +39,8 @@ pub(crate) struct Arguments {
     /// Without it the contacts are those of the decoder that the capture was recorded with.
     #[command(flatten)]
     pub(super) decoder: DecoderChoice,
-    /// The profile may decide so late, in milliseconds; one that is later already may stay so.
-    #[arg(long, value_name = "MS", default_value_t = 200, value_parser = clap::value_parser!(u32).range(0..=5_000))]
+    /// How late the profile may decide at most, in milliseconds; a profile that is later already may stay so.
+    #[arg(long, value_name = "MS", default_value_t = 200, value_parser = parse_delay, allow_hyphen_values = true)]
     pub(super) delay_ms: u32,
     /// Write the fitted profile: a new one of your own, by its name, or a file. Comments and layout stay.
     #[arg(long, value_name = "NAME|FILE")]
@@ -47,6 +48,11 @@ pub(crate) struct Arguments {
     /// Print one JSON document.
     #[arg(long)]
     pub(super) json: bool,
+}
+
+/// The milliseconds that a profile may take.
+fn parse_delay(text: &str) -> Result<u32, String> {
+    number::whole(text, &["ms"], 0..=5_000, "milliseconds from 0 to 5000, such as 200 or 200ms")
 }
 
 impl Arguments {

@@ -11,6 +11,7 @@ use super::report::Pair;
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::{print_json, stdout};
+use tactpad::counted::counted;
 use tactpad::lab::tuning::fitting::Fitted;
 use tactpad::lab::tuning::force_range::fit::{ForceRangeError, ReachCount, fit};
 use tactpad::lab::tuning::force_range::levels::{self, ends_n, is_one_force};
@@ -117,13 +118,9 @@ fn too_few(capture: &Path, peaks: &Peaks) -> Failure {
         "{} has {} in its first half and {} in its second, and {PRESSES_MIN} of each are needed: press again and again and \
          lift the finger in between, lightly up to the recording's middle and hard after it",
         capture.display(),
-        counted(peaks.light_n.len(), "press", "presses"),
+        counted(peaks.light_n.len(), "press"),
         peaks.hard_n.len(),
     ))
-}
-
-fn counted(count: usize, one: &str, many: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { many })
 }
 
 /// Why a profile is not fitted, and what would be one for this hand.

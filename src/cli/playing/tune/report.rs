@@ -95,7 +95,12 @@ impl fmt::Display for TuneReport {
         } else {
             writeln!(f, "\nproposed:")?;
             self.changes.iter().try_for_each(|change| writeln!(f, "  {}", change.words))?;
-            writeln!(f, "\nwith that: {} of {events} correct ({})", correct.after, percent(share.after))?;
+            writeln!(
+                f,
+                "\nwith the fitted profile: {} of {events} correct ({})",
+                correct.after,
+                percent(share.after)
+            )?;
             writeln!(f, "{}", confusion.after)?;
             let Delay { limit, before, after } = delay_ms;
             write!(
@@ -105,7 +110,7 @@ impl fmt::Display for TuneReport {
         }
         if [unlabelled.before, unlabelled.after] != [0, 0] {
             let Pair { before, after } = unlabelled;
-            write!(f, "\nwhere nothing is said of what was meant {after} came, before {before}")?;
+            write!(f, "\nbetween the labelled presses {after} came, before {before}")?;
         }
         if let Some(HeldOut { events, correct: Pair { before, after } }) = &self.held_out {
             write!(

@@ -199,7 +199,7 @@ pub(super) fn fitted(
     let changes: Vec<_> =
         changes.iter().map(|change| words::ChangedNumber::of(change, &profile).words).collect();
     let text_told = format!(
-        "{came}; with what is proposed it would have been {after}, which looks better than it is, as it was fitted to the same presses. \
+        "{came}; with the proposal {after} would have come. That looks better than it is, because it was fitted to these same presses. \
          Proposed: {}.",
         changes.join("; ")
     );

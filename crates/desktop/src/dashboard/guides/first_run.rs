@@ -131,7 +131,7 @@ impl PageGuide for FirstRun {
         GuideStatus {
             id: self.id(),
             title: "First run",
-            about: "From the plugged-in pad to the first press.",
+            about: "This leads you from plugging the pad in to the first press.",
             state: self.state,
             steps: STEPS.into_iter().enumerate().map(step).collect(),
             result: None,

@@ -6,6 +6,7 @@ use super::pieces::Pieces;
 use super::recording::{NO_NAME, Recording};
 use crate::dashboard::practice::{Level, PressWish, Wish};
 use tactpad_bridge::request::Request;
+use tactpad_core::counted::counted;
 use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_lab::tuning::fitting::Fitted;
 use tactpad_lab::tuning::force_range::fit::{ForceRangeError, fit};
@@ -103,9 +104,9 @@ pub(super) fn fitted(name: &str, text: &str, pieces: &Pieces) -> Result<GuideRes
     let peaks = Peaks { light_n: of_kind(0), hard_n: of_kind(1) };
     let range = Range::of(&peaks).ok_or_else(|| {
         format!(
-            "There were {} light presses and {} hard ones, and {PRESSES_MIN} of each are needed: begin anew.",
-            peaks.light_n.len(),
-            peaks.hard_n.len()
+            "There were {} and {}, and {PRESSES_MIN} of each are needed: begin anew.",
+            counted(peaks.light_n.len(), "light press"),
+            counted(peaks.hard_n.len(), "hard press")
         )
     })?;
     let Fitted { text, profile, changes } = fit(text, &profile, &range).map_err(|why| unfit(name, why))?;

@@ -174,7 +174,7 @@ impl Recording {
             Self::Finished(Ok(_)) => StepState::Done,
             Self::Finished(Err(_)) => StepState::Failed,
         };
-        let text = "This takes a few seconds; nothing is to be done.";
+        let text = "This takes a few seconds. You need do nothing.";
         PageStep { state, ..PageStep::to_do("fit", "Fit the profile", text) }
     }
 
@@ -226,7 +226,7 @@ pub(super) fn judged(
     }
     Err(format!(
         "These presses do not follow what was asked, so nothing is proposed: presses for the same cue are no more alike than in orders that \
-         nobody asked for. Who presses without looking at the cues is told so in {:.0} of 100 cases at least. Begin anew; there is no hurry, and \
+         nobody asked for. Somebody who presses without looking at the cues is told so in {:.0} of 100 cases at least. Begin anew; there is no hurry, and \
          what this hand cannot do may be left out.",
         100.0 * (1.0 - ERROR_RATE)
     ))

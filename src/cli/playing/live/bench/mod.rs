@@ -29,6 +29,7 @@ use tactpad::bridge::observer::observe;
 use tactpad::bridge::opening::OpenedPad;
 use tactpad::bridge::sink::null::NullSink;
 use tactpad::bridge::transport::address::PadAddress;
+use tactpad::counted::counted;
 use tactpad::lab::bench::guide::BenchGuide;
 use tactpad::lab::bench::report::BenchReport;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
@@ -79,7 +80,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     let (faults, open) = (report.faults.len(), report.open.len());
-    Err(Failure::Failed(format!("{faults} things to mend, {open} not found out")))
+    Err(Failure::Failed(format!("{} to mend, {open} not found out", counted(faults, "thing"))))
 }
 
 /// Runs the bridge, and the session beside it, until nothing is left to do or somebody stops it.

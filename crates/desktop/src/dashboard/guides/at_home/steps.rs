@@ -34,17 +34,17 @@ const STEPS: [(&str, &str, &str); 5] = [
     (
         "press",
         "Press anywhere",
-        "Until the finger was on the pad for a minute in all. Whoever leaves a part of the plate out goes on without it after half a minute more.",
+        "Press until the finger was on the pad for a minute in all. If you leave a part of the plate out, the guide goes on without it half a minute later.",
     ),
     (
         "marks",
         "Weight on the marks",
-        "Hands off as soon as the weight stands. It notices by itself that it lies still for two seconds.",
+        "Take your hand away as soon as the weight stands. The guide notices by itself when it has lain still for two seconds.",
     ),
     (
         "fit",
         "Fit the decoder",
-        "This takes half a minute at most; nothing is to be done, and the game goes on.",
+        "This takes half a minute at most. You need do nothing, and the game goes on.",
     ),
 ];
 

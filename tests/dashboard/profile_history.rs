@@ -39,7 +39,7 @@ fn history(browser: &Browser) -> String {
 
 /// Opens a row of the history by its number from the top.
 fn open(browser: &Browser, row: usize) {
-    browser.run(&format!("document.querySelectorAll('.history button')[{row}].click()"));
+    browser.run(&format!("document.querySelectorAll('.history button:last-of-type')[{row}].click()"));
     browser.wait("document.getElementById('draft-state').textContent === '● not saved'");
 }
 
@@ -71,6 +71,19 @@ fn an_earlier_save_and_the_shipped_profile_come_back_as_drafts() {
     };
     shows("2.5");
     assert!(comes_true(|| shown.status()["preview"] == true), "it is tried before it is kept");
+    browser.run("document.getElementById('undo').click()");
+    shows("2.75");
+    // What was changed once more since stays; what was not is as before.
+    let undo = |row: usize| {
+        browser.run(&format!("document.querySelectorAll('.history [aria-label^=Undo]')[{row}].click()"))
+    };
+    undo(1);
+    browser.wait("document.getElementById('profile').innerText.includes('Nothing is left of it to undo')");
+    undo(0);
+    shows("2.5");
+    browser.wait("document.querySelector('.editor-message').textContent.includes('is undone in the editor')");
+    let kept = "return import('/page/profile/undo_save.js').then(({ undoing }) => undoing({ a: 1, list: [{ b: 2 }] }, { a: 3, list: [{ b: 4 }] }, { a: 3, list: [{ b: 5 }], c: 6 }))";
+    assert_eq!(browser.run(kept), serde_json::json!([{"table": [], "key": "a", "value": 1}]));
     browser.run("document.getElementById('undo').click()");
     shows("2.75");
     open(&browser, 2);

@@ -11,18 +11,22 @@ const STATES = {
 };
 
 export class DoctorView {
-  constructor(section) {
+  /** @param {import("./live/live.js").LiveView} live knows what happens right now */
+  constructor(section, live) {
+    this.live = live;
     this.about = el("p");
+    this.now = el("div");
     this.list = el("ul", { class: "entries" });
-    section.append(el("p", {}, button("Look again", () => this.show())), this.about, this.list);
+    section.append(el("p", {}, button("Look again", () => this.show())), el("div", { class: "card entry" }, el("h3", { text: "Right now" }), this.now), this.about, this.list);
   }
 
   async show() {
+    this.now.replaceChildren(...this.live.sentences().map((text) => el("p", { text })));
     say(this.about, "Looking …");
     try {
       const { checks } = await get("/api/doctor");
       const [bad, notes] = ["bad", "note"].map((finding) => checks.filter((check) => check.finding === finding).length);
-      say(this.about, `${bad === 0 ? "Nothing stands in the way" : `${bad} of ${checks.length} findings stand in the way`}; ${notes} worth knowing.`);
+      say(this.about, `In the way on this machine: ${bad === 0 ? "nothing" : bad}. Worth knowing: ${notes === 0 ? "nothing" : notes}.`);
       this.list.replaceChildren(...checks.map(entry));
     } catch (error) {
       say(this.about, error.message);

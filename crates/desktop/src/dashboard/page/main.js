@@ -32,7 +32,7 @@ function makeViews() {
   views.profile = new ProfileView(section("profile"));
   views.guides = new GuidesView(section("guides"), (draft) => views.profile.openDraft(draft));
   views.reports = new ReportsView(section("reports"));
-  views.doctor = new DoctorView(section("doctor"));
+  views.doctor = new DoctorView(section("doctor"), views.live);
   return views;
 }
 

@@ -3,7 +3,8 @@
 import { announces } from "./settings.js";
 
 const BETWEEN_MS = 1000;
-const REASONS = { slow: "too short", bounce: "too soon after the last", dwell: "not at rest" };
+/** Why a press does not count. */
+export const REASONS = { slow: "too short", bounce: "too soon after the last", dwell: "not at rest" };
 
 const region = () => document.getElementById("announcer");
 /** @type {Map<string, number>} */

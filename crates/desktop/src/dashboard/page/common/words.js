@@ -31,14 +31,15 @@ export function pathInWords(path) {
 /** The first letter as a capital, for titles. */
 export const capital = (words) => words[0].toUpperCase() + words.slice(1);
 
+/** What can stand for a setting, with its words. @returns {Record<string, string>} */
+export const choicesOf = (path) => find(table.choices, path) ?? {};
+
 /** The word of what stands for a setting. */
-export function choiceInWords(path, written) {
-  return find(table.choices, path)?.[written] ?? written;
-}
+export const choiceInWords = (path, written) => choicesOf(path)[written] ?? written;
 
 /** What stands in a file for a word of a setting. */
 export function choiceWritten(path, word) {
-  const choices = Object.entries(find(table.choices, path) ?? {});
+  const choices = Object.entries(choicesOf(path));
   return choices.find(([, known]) => same(known, word))?.[0] ?? word;
 }
 

@@ -15,7 +15,7 @@ export class Field {
 
   /**
    * @param {(string | number)[]} path
-   * @param {{ key: string, kind: string, required: boolean, options: string[] | null, min?: number, max?: number, default?: any, help: string }} about
+   * @param {{ key: string, kind: string, required: boolean, options: string[] | null, none?: string, min?: number, max?: number, default?: any, help: string }} about
    * @param {import("./values.js").Values} values
    */
   constructor(path, about, values) {
@@ -65,10 +65,10 @@ export class Field {
   }
 
   #select() {
-    const { required, options, default: fallback } = this.about;
-    const none = required ? [] : [el("option", { value: "", text: fallback === undefined ? "as usual" : `as usual: ${this.#inWords(fallback)}` })];
+    const { required, options, none, default: fallback } = this.about;
+    const unwritten = required ? [] : [el("option", { value: "", text: fallback === undefined ? none ?? "as usual" : `as usual: ${this.#inWords(fallback)}` })];
     return el("select", { "aria-describedby": this.described, onchange: (event) => this.#write(event.target.value === "" ? null : event.target.value) },
-      ...none, ...options.map((option) => el("option", { value: option, text: this.#inWords(option) })));
+      ...unwritten, ...options.map((option) => el("option", { value: option, text: this.#inWords(option) })));
   }
 
   #number() {

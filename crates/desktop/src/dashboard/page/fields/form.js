@@ -1,10 +1,13 @@
 // The form of all keys of a profile, made from the JSON Schema and the draft's document.
 
+import { additionAsText, askAddition } from "./addition.js";
 import { announce } from "../common/announce.js";
+import { Chain } from "./chain.js";
 import { button, el, say } from "../common/dom.js";
 import { Field } from "./field.js";
 import { nameOf } from "./schema.js";
-import { TABLES, withEffect, withTable, withoutTable } from "./templates.js";
+import { TABLES, withEffect, withTable, withText, withoutTable } from "./templates.js";
+import { reached } from "../picture/touch.js";
 import { tablesOf, written } from "./values.js";
 import { capital, choiceInWords, controlsOf, settingAt } from "../common/words.js";
 
@@ -12,29 +15,51 @@ import { capital, choiceInWords, controlsOf, settingAt } from "../common/words.j
 const IN_SIGHT = new Set(["release_n", "release_force_n", "min_force_n", "mode", "centre_radius_mm", "radius_hysteresis_mm", "rotation_deg",
   "diagonal_deg", "centre_x_mm", "centre_y_mm", "from_deg", "to_deg", "inner_radius_mm", "outer_radius_mm", "hysteresis_mm", "left_handed", "filter_samples",
   "min_press_ms", "slow_ms", "bounce_ms", "gamepad", "keyboard", "from_n", "full_n", "full_radius_mm", "speed_counts_per_s", "zone", "label", "up", "down", "left", "right", "class", "executable", "from"]);
-const IN_SIGHT_BESIDE = { long_press_ms: "hold", permissive_hold: "hold", hold_on_other_key_press: "hold", double_press_ms: "double", hard_press_n: "hard", hard_release_n: "hard", skip: "hard", skip_ms: "skip", dwell_mm: "dwell_ms" };
+/** Keys that need another one: they stand in sight beside it, and go with it. */
+const IN_SIGHT_BESIDE = { long_press_ms: "hold", permissive_hold: "hold", hold_on_other_key_press: "hold", double_press_ms: "double", hard_press_n: "hard", hard_release_n: "hard", skip: "hard", skip_ms: "hard", dwell_mm: "dwell_ms" };
 const EFFECTS = ["out", "tap", "double", "hold", "light", "hard"];
+/** Settings of the profile that fit it to the hand. */
+const OF_HAND = new Set(["left_handed", "centre_x_mm", "centre_y_mm", "filter_samples", "min_press_ms"]);
+/** What people look for most stands first. */
+const FIRST = new Set(["press_n", "rotation_deg"]);
+/** What is inside of parts that say nothing by themselves. */
+const HINTS = {
+  hand: "left or right hand, its middle, smoothing, shortest press", access: "a resting hand, trembling, presses too slow or twice",
+  gain: "a hand that reaches less far on one side", profile: "its name; gamepad or keyboard",
+};
+/** Which tables stand under which heading, in their order. */
+const PLAYS = ["dpad", "button", "zone", "pointer", "stick", "trigger", "layer", "macro"];
 
 export class Form {
   /** @type {Field[]} */
   #fields = [];
+  /** @type {Chain[]} */
+  #chains = [];
   #shape = "";
   /** What a person opened and closed, by its name. @type {Map<string, boolean>} */
   #opened = new Map();
   /** Where the focus goes once what was asked for is there: the first of these that there is. @type {string[]} */
   #goTo = [];
 
-  /** @param {import("./values.js").Values} values @param {import("./schema.js").Schema} schema */
-  constructor(values, schema) {
-    Object.assign(this, { values, schema });
+  /**
+   * @param {import("./values.js").Values} values
+   * @param {import("./schema.js").Schema} schema
+   * @param {(part: string | null) => void} light is told which part of the plate belongs to what was opened: "dpad", or a zone
+   */
+  constructor(values, schema, light) {
+    Object.assign(this, { values, schema, light });
     this.groups = el("div", { class: "groups" });
     this.state = el("p", { class: "warn" });
     this.lists = ["gamepad", "keyboard", "pointer"].map((device) => el("datalist", { id: `names-${device}` },
       ...controlsOf(device).filter(([name]) => schema.canBind(device, name)).map(([, value]) => el("option", { value }))));
     const explain = el("input", { type: "checkbox", checked: true, onchange: () => this.node.classList.toggle("unexplained", !explain.checked) });
     this.adders = el("div", { class: "commands adders" });
-    this.set = el("fieldset", { class: "form-set" }, el("legend", { class: "unseen", text: "Settings of the profile" }), this.groups, el("h4", { text: "Add" }), this.adders);
-    this.node = el("div", { class: "form" }, el("label", { class: "check" }, explain, "Explanations"), this.state, this.set, ...this.lists);
+    this.forHand = el("div", { class: "groups" });
+    this.ofProfile = el("div", { class: "groups" });
+    const part = (title, ...nodes) => [el("h4", { text: title }), ...nodes];
+    this.set = el("fieldset", { class: "form-set" }, el("legend", { class: "unseen", text: "Settings of the profile" }),
+      ...part("What your hand does → what comes of it", this.groups, this.adders), ...part("How it fits your hand", this.forHand), ...part("The profile itself", this.ofProfile));
+    this.node = el("div", { class: "form" }, this.state, this.set, el("label", { class: "check" }, explain, "Explanations"), ...this.lists);
   }
 
   get #draft() {
@@ -51,12 +76,14 @@ export class Form {
     const shape = shapeOf(document);
     if (shape !== this.#shape) this.#make(document, shape);
     for (const field of this.#fields) field.refresh();
+    for (const chain of this.#chains) chain.refresh();
     this.#follow();
   }
 
   /** Adds or removes something by `change`; says so, and the focus follows. */
-  #apply(sentence, goTo, change) {
+  #apply(sentence, goTo, change, opened = null) {
     this.#goTo = goTo;
+    if (opened !== null) this.#opened.set(opened, true);
     change();
     announce(sentence);
   }
@@ -72,16 +99,48 @@ export class Form {
   #make(document, shape) {
     this.#shape = shape;
     this.#fields = [];
-    const groups = [this.#group("profile", "The profile itself", [], document, null)];
-    for (const table of Object.keys(this.schema.json.properties)) {
-      const value = document[table];
-      if (value === undefined || typeof value !== "object") continue;
-      if (!Array.isArray(value)) groups.push(this.#group(table, capital(settingAt([table]).word), [table], value, (title) => this.#remove(table, 0, title)));
-      else value.forEach((one, index) => groups.push(this.#group(nameOf([table, index]), titleOf(table, index, one), [table, index], one, (title) => this.#remove(table, index, title))));
-    }
-    this.groups.replaceChildren(...groups);
+    this.#chains = [];
+    this.groups.replaceChildren(...PLAYS.flatMap((table) => this.#tables(document, table)));
+    this.forHand.replaceChildren(this.#group("hand", "Hand and pace", [], document, null, ({ key }) => OF_HAND.has(key)),
+      ...["access", "gain"].map((table) => this.#group(table, capital(settingAt([table]).word), [table], document[table] ?? {}, null)));
+    this.ofProfile.replaceChildren(this.#group("profile", "Name and output", [], document, null, ({ key }) => !OF_HAND.has(key)), ...this.#tables(document, "program"));
     const missing = Object.entries(TABLES).filter(([table, { many }]) => many || document[table] === undefined);
-    this.adders.replaceChildren(...missing.map(([table, { name }]) => button(`+ ${name}`, () => this.#add(table, name), { "data-add": table })));
+    this.adders.replaceChildren(button("+ Add a button …", () => this.#addButton(), { "data-add": "button" }),
+      this.#fold("adders", "folded", "Add something else", false, [el("div", { class: "commands" }, ...missing.map(([table, { name }]) => button(`+ ${name}`, () => this.#add(table, name), { "data-add": table })))]));
+  }
+
+  /** The groups of a table, or of all tables of a list. */
+  #tables(document, table) {
+    const value = document[table];
+    if (value === undefined || typeof value !== "object") return [];
+    if (!Array.isArray(value)) return [this.#group(table, capital(settingAt([table]).word), [table], value, (title) => this.#remove(table, 0, title))];
+    return value.map((one, index) => this.#group(nameOf([table, index]), titleOf(table, index, one), [table, index], one, (title) => this.#remove(table, index, title)));
+  }
+
+  /** Opens the part of this name alone, and goes there. */
+  pick(name) {
+    for (const group of this.node.querySelectorAll(".group")) group.open = group.dataset.group === name;
+    const summary = this.node.querySelector(`[data-group="${name}"] > summary`);
+    summary?.focus();
+    summary?.scrollIntoView({ block: "nearest" });
+  }
+
+  /** Marks what a frame presses. */
+  follow({ contact, held_names }) {
+    const { sketch } = this.#draft;
+    if (sketch === null || this.#draft.stale) return;
+    const shares = new Map(contact === null ? [] : reached(sketch, contact).map(([share, { number }]) => [`button.${number - 1}`, share]));
+    if (contact !== null && sketch.dpad !== null) shares.set("dpad", contact.fz_n / sketch.dpad.min_force_n);
+    for (const chain of this.#chains) chain.mark(shares.get(nameOf(chain.path)) ?? 0, held_names);
+  }
+
+  async #addButton() {
+    const { sketch, document } = this.#draft;
+    if (sketch === null) return;
+    const answer = await askAddition(sketch, this.schema);
+    if (answer === null) return;
+    const group = nameOf(["button", tablesOf(document, "button").length]);
+    this.#apply("Added: a button.", [`[data-group="${group}"] > summary`], () => this.#draft.replace(withText(this.#draft.text, additionAsText(answer, sketch.output))), group);
   }
 
   #add(table, name) {
@@ -97,12 +156,15 @@ export class Form {
   }
 
   /** A table's keys; those that are not written and seldom wanted are folded away. */
-  #group(name, title, path, value, remove) {
-    const keys = this.schema.keys(path).filter(({ kind }) => kind !== "fixed" && kind !== "list");
+  #group(name, title, path, value, remove, belongs = () => true) {
+    const keys = this.schema.keys(path).filter((about) => about.kind !== "fixed" && about.kind !== "list" && belongs(about));
     const plain = keys.filter(({ kind }) => kind !== "table" && kind !== "effect");
-    const seen = plain.filter(({ key, required }) => required || value[key] !== undefined || inSight(key, value));
+    const seen = plain.filter(({ key, required }) => required || value[key] !== undefined || inSight(key, value))
+      .sort((one, other) => FIRST.has(other.key) - FIRST.has(one.key));
     const folded = plain.filter((about) => !seen.includes(about));
-    return this.#fold(name, "group", el("strong", { text: title }), true, [
+    const chain = new Chain(path, title, HINTS[name] ?? "", this.#draft);
+    this.#chains.push(chain);
+    return this.#fold(name, "group", chain.node, false, [
       ...seen.map((about) => this.#field(path, about)),
       ...this.#inner(path, value, keys),
       this.#folded(`${name} more`, `More settings (${folded.length})`, path, folded),
@@ -113,8 +175,17 @@ export class Form {
   /** Something to open and close; it stays as it is when fields are made anew. */
   #fold(name, kind, title, open, children) {
     const node = el("details", { class: kind, "data-group": name, open: this.#opened.get(name) ?? open }, el("summary", {}, title), ...children);
-    node.addEventListener("toggle", () => this.#opened.set(name, node.open));
+    node.addEventListener("toggle", () => {
+      this.#opened.set(name, node.open);
+      if (kind === "group" && node.isConnected) this.light(node.open ? this.#partOf(name) : null);
+    });
     return node;
+  }
+
+  #partOf(name) {
+    const [table, index] = name.split(".");
+    const one = tablesOf(this.#draft.document, table)[index];
+    return table === "zone" ? one?.name : table === "button" ? one?.zone : name;
   }
 
   /** Keys that are folded away; nothing if there are none. */
@@ -122,7 +193,20 @@ export class Form {
     return keys.length === 0 ? null : this.#fold(name, "folded", title, false, keys.map((about) => this.#field(path, about)));
   }
 
-  #field(path, about) {
+  /** Names of other tables are chosen among those that there are. */
+  #named(path, about) {
+    const { document } = this.#draft;
+    const names = (table) => tablesOf(document, table).map(({ name }) => name).filter((name) => typeof name === "string");
+    const directions = document.dpad === undefined ? [] : ["up", "down", "left", "right"];
+    const options = { zone: [...names("zone"), ...directions], layer: names("layer"), macro: names("macro") }[about.key];
+    if (options === undefined || about.kind !== "string" || path.length === 0) return about;
+    const value = written(document, [...path, about.key]);
+    const none = path.length === 2 ? { zone: "everywhere", layer: "in all" }[about.key] : "none";
+    return { ...about, kind: "choice", none, options: [...new Set([...options, value].filter((one) => one !== undefined))] };
+  }
+
+  #field(path, plain) {
+    const about = this.#named(path, plain);
     const field = new Field([...path, about.key], about, this.values);
     this.#fields.push(field);
     return field.node;
@@ -142,7 +226,7 @@ export class Form {
     const folded = keys.filter((about) => !seen.includes(about));
     return el("fieldset", { class: "part", "data-part": nameOf(path) }, el("legend", { text: title }), ...seen.map((about) => this.#field(path, about)),
       this.#folded(nameOf(path), `More for ${title} (${folded.length})`, path, folded),
-      remove === null ? null : button(`Remove ${title}`, remove, { class: "remove" }));
+      remove === null ? null : button(`Turn off the ${title.toLowerCase()}`, remove, { class: "remove" }));
   }
 
   #effects(path, value) {
@@ -160,9 +244,11 @@ export class Form {
       () => this.#draft.replace(withEffect(this.#draft.text, path[1], effect, press_n)));
   }
 
+  /** What is set for it alone goes with it. */
   #removeEffect(path, effect) {
+    const alone = Object.keys(IN_SIGHT_BESIDE).filter((key) => IN_SIGHT_BESIDE[key] === effect && this.values.isWritten([...path, key]));
     const others = EFFECTS.filter((other) => other !== effect).map((other) => `[data-part="${nameOf([...path, other])}"] [data-field]`);
-    this.#apply(`Removed: ${settingAt([...path, effect]).word}.`, [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.values.write([...path, effect], null));
+    this.#apply(`Removed: ${settingAt([...path, effect]).word}.`, [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.#draft.change([effect, ...alone].map((key) => ({ table: path, key, value: null }))));
   }
 
   #bindings(path, device) {

@@ -49,7 +49,7 @@ export class NumberField {
   #describe() {
     const { unit, limits, step } = this.asked;
     const { min, max } = limits();
-    say(this.range, `${min} to ${max}${unit === "" ? "" : ` ${unit}`}, arrow keys ${step}`);
+    say(this.range, `${min} to ${max}${unit === "" ? "" : ` ${unit}`}, arrow keys ±${step}`);
     set(this.node, { "aria-valuemin": min, "aria-valuemax": max });
   }
 

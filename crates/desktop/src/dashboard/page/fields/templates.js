@@ -4,11 +4,8 @@ const BINDING = '{ gamepad = "BTN_SOUTH", keyboard = "KEY_SPACE" }';
 
 /** What can be added; `many` tables may stand more than once. */
 export const TABLES = {
-  button: { many: true, name: "a button", text: `[[button]]\nforce = "fz"\npress_n = 2.0\nout = ${BINDING}\n` },
   zone: { many: true, name: "a zone", text: '[[zone]]\nname = "NAME"\nfrom_deg = 45\nto_deg = 135\ninner_radius_mm = 10\n' },
   dpad: { many: false, name: "directions", text: "[dpad]\n" },
-  access: { many: false, name: "help for hands", text: "[access]\n" },
-  gain: { many: false, name: "gains of the sides", text: "[gain]\n" },
   pointer: { many: false, name: "the mouse pointer", text: "[pointer]\n" },
   stick: { many: true, name: "a stick", text: '[[stick]]\nstick = "left"\n' },
   trigger: { many: true, name: "a trigger", text: '[[trigger]]\ntrigger = "right"\n' },
@@ -23,10 +20,10 @@ function freshName(text, table) {
 }
 
 /** The text with one more table at its end. */
-export function withTable(text, table) {
-  const addition = TABLES[table].text.replace("NAME", freshName(text, table));
-  return `${text.trimEnd()}\n\n${addition}`;
-}
+export const withTable = (text, table) => withText(text, TABLES[table].text.replace("NAME", freshName(text, table)));
+
+/** The text with more tables at its end. */
+export const withText = (text, addition) => `${text.trimEnd()}\n\n${addition}`;
 
 const HEADER = /^\s*\[\[?\s*([\w.]+)\s*\]/;
 

@@ -3,6 +3,14 @@
 import { near } from "../picture/geometry.js";
 import { tidy } from "./schema.js";
 
+/** What a press can do, by its keys: a button or key, the mouse, a layer, a macro, or what tactpad is asked. */
+const KINDS = [["gamepad", "keyboard"], ["pointer"], ["layer"], ["macro"], ["bridge"]];
+/** The let-go force of each press force, the usual share of it, and how much lower it is at least. */
+const LET_GO = { press_n: "release_n", hard_press_n: "hard_release_n", min_force_n: "release_force_n" };
+const LET_GO_SHARE = 0.7;
+const GAP_N = 0.05;
+const USUAL = { gamepad: "BTN_SOUTH", keyboard: "KEY_SPACE" };
+
 /** What is written at a path of a document. */
 export function written(document, path) {
   let value = document;
@@ -43,9 +51,23 @@ export class Values {
     return written(this.draft.document, path) !== undefined;
   }
 
-  /** Changes one value. */
+  /** Changes one value, and what cannot stand beside it: another kind of effect goes, a let-go force follows its press force down. */
   write(path, value, gesture) {
-    this.draft.change([{ table: path.slice(0, -1), key: path.at(-1), value }], gesture);
+    const [table, key] = [path.slice(0, -1), path.at(-1)];
+    this.draft.change([{ table, key, value }, ...(value === null ? [] : [...this.#rivals(table, key), ...this.#letGo(table, key, value)])], gesture);
+  }
+
+  #letGo(table, key, press_n) {
+    const path = [...table, LET_GO[key]];
+    return key in LET_GO && this.isWritten(path) && this.at(path) > press_n - GAP_N ? [{ table, key: LET_GO[key], value: tidy(Math.round(LET_GO_SHARE * press_n * 100) / 100) }] : [];
+  }
+
+  #rivals(table, key) {
+    const kind = KINDS.find((keys) => keys.includes(key));
+    if (kind === undefined || table[0] !== "button") return [];
+    const gone = KINDS.filter((it) => it !== kind).flat().filter((it) => this.isWritten([...table, it]));
+    const missing = kind.filter((it) => it !== key && !this.isWritten([...table, it]));
+    return [...gone.map((it) => ({ table, key: it, value: null })), ...missing.map((it) => ({ table, key: it, value: USUAL[it] }))];
   }
 
   /** Where a value may lie so that the profile stays valid. @returns {{ min: number, max: number }} */
@@ -54,25 +76,22 @@ export class Values {
     const key = path.at(-1);
     // Not every table that has the one key has the other.
     const beside = (name) => (this.schema.has([...path.slice(0, -1), name]) ? this.at([...path.slice(0, -1), name]) : NaN);
-    const gap = 0.05;
     const apart = 0.5;
     const upper = {
-      release_n: () => beside("press_n") - gap,
-      hard_release_n: () => beside("hard_press_n") - gap,
-      release_force_n: () => beside("min_force_n") - gap,
+      release_n: () => beside("press_n") - GAP_N,
+      hard_release_n: () => beside("hard_press_n") - GAP_N,
+      release_force_n: () => beside("min_force_n") - GAP_N,
       radius_hysteresis_mm: () => (path[0] === "dpad" ? beside("centre_radius_mm") - apart : max),
       centre_radius_mm: () => (path[0] === "dpad" ? max : beside("full_radius_mm") - apart),
       inner_radius_mm: () => beside("outer_radius_mm") - 3,
-      from_n: () => beside("full_n") - gap,
+      from_n: () => beside("full_n") - GAP_N,
     };
     const lower = {
-      press_n: () => (this.isWritten([...path.slice(0, -1), "release_n"]) ? beside("release_n") + gap : min),
-      hard_press_n: () => Math.max(beside("press_n"), this.isWritten([...path.slice(0, -1), "hard_release_n"]) ? beside("hard_release_n") : 0) + gap,
-      min_force_n: () => (this.isWritten([...path.slice(0, -1), "release_force_n"]) ? beside("release_force_n") + gap : min),
+      hard_press_n: () => beside("press_n") + GAP_N,
       centre_radius_mm: () => (path[0] === "dpad" ? beside("radius_hysteresis_mm") + apart : min),
       outer_radius_mm: () => beside("inner_radius_mm") + 3,
       full_radius_mm: () => beside("centre_radius_mm") + apart,
-      full_n: () => beside("from_n") + gap,
+      full_n: () => beside("from_n") + GAP_N,
     };
     const known = (limit, otherwise) => (Number.isFinite(limit) ? tidy(limit) : otherwise);
     return { min: Math.max(min, known(lower[key]?.(), min)), max: Math.min(max, known(upper[key]?.(), max)) };

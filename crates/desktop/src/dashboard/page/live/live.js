@@ -4,6 +4,7 @@ import { announcePress } from "../common/announce.js";
 import { Channels } from "./channels.js";
 import { el, number, say, scroller, table } from "../common/dom.js";
 import { EventLanes } from "./events.js";
+import { LastTouch } from "./last_touch.js";
 import { Latency } from "./latency.js";
 import { Forces } from "../picture/meter.js";
 import { Finger, Plate } from "../picture/plate.js";
@@ -66,6 +67,8 @@ export class LiveView {
     this.forces = new Forces();
     this.readout = new Readout();
     this.held = el("ul", { class: "chips", "aria-label": "Held controls" });
+    this.lastTouch = new LastTouch();
+    this.touched = el("p", { class: "quiet small", id: "last-touch" });
     this.title = el("span", { class: "quiet" });
     this.freshness = el("p", { class: "quiet freshness", id: "freshness" });
     this.status = new Status();
@@ -83,12 +86,13 @@ export class LiveView {
         column(card("Latency", this.latency.node))));
     rememberFold(this.fold, "measurements");
     this.fold.addEventListener("toggle", () => this.#drawMeasured());
-    section.append(this.status.node, el("div", { class: "live-grid played" },
+    section.append(this.status.node, el("div", { class: "live-grid" },
       column(card("Plate", this.title, this.plate.node)),
-      column(card("Held now", this.held), card("Forces", this.forces.node))), this.fold);
+      column(card("Held now", this.held, this.touched, el("p", {}, el("a", { class: "action", href: "#doctor", text: "Nothing happens? See why" }))), card("Forces", this.forces.node))), this.fold);
   }
 
   setSketch({ profile, sketch }) {
+    this.sketch = sketch;
     say(this.title, `${profile}, ${sketch.output}`);
     this.plate.setSketch(sketch);
     this.forces.setSketch(sketch);
@@ -98,6 +102,7 @@ export class LiveView {
   take(frame) {
     this.frame = frame;
     this.lanes.take(frame);
+    this.lastTouch.take(frame);
     for (const press of frame.presses) announcePress(press);
   }
 
@@ -140,6 +145,7 @@ export class LiveView {
 
   /** Draws what changes four times a second. */
   drawSlow(ages) {
+    say(this.touched, this.lastTouch.sentence(this.sketch ?? null));
     if (!this.fold.open) return;
     if (this.message !== undefined) this.latency.draw(this.message);
     const age_ms = ages.p95();
@@ -151,7 +157,8 @@ export class LiveView {
   clear() {
     this.frame = undefined;
     this.message = undefined;
-    say(this.title, "");
+    this.lastTouch.clear();
+    for (const node of [this.title, this.touched]) say(node, "");
     this.plate.setSketch(null);
     this.forces.setSketch(null);
     this.finger.draw(null, null, this.trace);
@@ -163,6 +170,14 @@ export class LiveView {
     this.latency.draw({});
     say(this.freshness, "no updates");
     this.status.clear();
+  }
+
+  /** What there is to say right now to who wonders why nothing happens. */
+  sentences() {
+    const { state, sentence, output } = this.message?.status ?? {};
+    if (state === undefined) return ["tactpad does not answer."];
+    const plays = state === "playing" ? "tactpad plays: what is pressed goes on." : `${sentence ?? state}: as long as that is so, nothing is pressed.`;
+    return [plays, this.lastTouch.sentence(this.sketch ?? null), `What is pressed goes to: ${output}.`];
   }
 
   #drawHeld({ held, held_names }) {

@@ -37,20 +37,21 @@ export class Status {
   constructor() {
     this.sign = el("span", { class: "state-sign", "aria-hidden": "true" });
     this.word = el("strong", { id: "state" });
-    this.sentence = el("span", { class: "state-sentence" });
+    this.sentence = el("p", { class: "state-sentence", hidden: true });
     this.lines = new Map([...PLAYED, ...SETUP].map(([key]) => [key, el("dd")]));
     this.setup = this.#list(SETUP);
     this.error = el("p", { class: "bad", hidden: true });
     this.choice = el("select", { id: "profile-choice", class: "main", onchange: () => this.#choose() });
     this.pause = button("Pause", () => this.#pause(), { id: "pause", class: "main" });
+    document.getElementById("now").append(el("p", { class: "state" }, this.sign, this.word), this.pause);
     this.node = el("div", { class: "card status" },
       el("h3", { class: "unseen", text: "State" }),
-      el("p", { class: "state" }, this.sign, this.word, this.sentence),
-      el("div", { class: "commands" }, this.pause,
-        button("Measure the zero", () => command("/api/tare", "Measuring the zero: leave the pad alone."), { id: "tare", class: "main" }),
-        button("Release everything", () => command("/api/panic", "Everything is released."), { id: "panic", class: "main" }),
+      this.sentence,
+      el("div", { class: "commands" },
         el("label", { class: "chooser" }, "Profile in play ", this.choice),
-        button("Next profile", () => this.#next(), { id: "next-profile", class: "main" })),
+        button("Next profile", () => this.#next(), { id: "next-profile", class: "main" }),
+        button("Measure the zero", () => command("/api/tare", "Measuring the zero: leave the pad alone."), { id: "tare", class: "main" }),
+        button("Release everything", () => command("/api/panic", "Everything is released."), { id: "panic", class: "main" })),
       this.#list(PLAYED), this.error);
     this.#makeCounters();
   }
@@ -97,7 +98,7 @@ export class Status {
   /** Shows a status message. */
   draw({ status }) {
     if (status.state !== this.#state) this.#changed(status);
-    say(this.sentence, status.sentence === status.state ? "" : status.sentence ?? "");
+    this.#explain(status.sentence === status.state ? "" : status.sentence ?? "");
     for (const [key, node] of this.lines) {
       const text = status[key] ?? (key === "pad" ? status.described?.title : null) ?? null;
       say(node, text ?? "–");
@@ -114,12 +115,17 @@ export class Status {
     this.#state = null;
     say(this.sign, "✕");
     say(this.word, "not connected");
-    say(this.sentence, "");
+    this.#explain("");
     this.sign.parentElement.className = "state bad";
     for (const node of this.lines.values()) say(node, "–");
     say(this.pause, "Pause");
     this.error.hidden = true;
     this.countersBody.replaceChildren();
+  }
+
+  #explain(sentence) {
+    this.sentence.hidden = sentence === "";
+    say(this.sentence, sentence);
   }
 
   #changed({ state, sentence }) {

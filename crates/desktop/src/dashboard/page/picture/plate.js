@@ -12,6 +12,8 @@ export class Plate {
   constructor(label) {
     const clip = `plate-${plates++}`;
     this.layers = {};
+    /** @type {string | null} */
+    this.picked = null;
     const layer = (name, clipped) => {
       this.layers[name] = svg("g", { class: `plate-${name}`, "clip-path": clipped ? `url(#${clip})` : null });
       return this.layers[name];
@@ -22,6 +24,12 @@ export class Plate {
       layer("sectors", true), layer("zones", true), layer("rings", true),
       svg("circle", { class: "plate-rim", r: PLATE_RADIUS_MM }),
       layer("names", false), layer("centre", false), layer("finger", false), layer("handles", false));
+  }
+
+  /** Lights a part of the profile: "dpad", the name of a zone, or none. */
+  pick(part) {
+    this.picked = part;
+    for (const node of this.node.querySelectorAll("[data-part]")) node.classList.toggle("picked", node.dataset.part === part);
   }
 
   /** Draws a profile's parts; null draws an empty plate. */
@@ -36,6 +44,7 @@ export class Plate {
       if (stick.from === "place") this.#drawPair(centre, stick.centre, stick.full, stick.word, stick.word_at_mm);
     }
     this.#drawCentre(centre);
+    this.pick(this.picked);
   }
 
   #drawDirections(centre, dpad) {
@@ -46,6 +55,7 @@ export class Plate {
         class: `sector ${kind}`,
         d: sectorPath(centre, from_deg, to_deg, dpad.centre_radius_mm, FAR_MM),
         "data-sector": index,
+        "data-part": "dpad",
       }));
       this.#name(word_at_mm, word);
     }
@@ -58,7 +68,7 @@ export class Plate {
     const d = whole
       ? ringPath(centre, inner_radius_mm, outer_radius_mm)
       : sectorPath(centre, from_deg, to_deg, inner_radius_mm, outer_radius_mm);
-    this.layers.zones.append(svg("path", { class: "zone", d, "fill-rule": "evenodd" }));
+    this.layers.zones.append(svg("path", { class: "zone", d, "fill-rule": "evenodd", "data-part": name }));
     this.#name(name_at_mm, name, "zone-name");
   }
 

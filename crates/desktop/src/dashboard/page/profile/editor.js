@@ -71,17 +71,19 @@ export class ProfileView {
     this.plate = new Plate("Plate with the handles of the profile that is edited");
     this.finger = new Finger(this.plate, "editor-contact");
     this.plateHandles = new PlateHandles(this.plate, this.values);
-    this.plateBinding = new PlateBinding(this.plate, this.values);
+    this.plateBinding = new PlateBinding(this.plate, this.values, (group) => this.form.pick(group));
     this.forceHandles = new ForceHandles(this.values);
-    this.form = new Form(this.values, schema);
+    this.form = new Form(this.values, schema, (part) => this.plate.pick(part));
     this.text = new TextPane(this.draft);
     this.rewind = new Rewind(this.draft);
     this.profileHistory = new ProfileHistory({
-      draft: (text, sentence) => this.#showDraft(text, sentence),
+      draft: (text, sentence) => this.#showDraft(sentence, () => this.draft.replace(text)),
+      change: (changes, sentence) => this.#showDraft(sentence, () => this.draft.change(changes)),
+      document: () => this.draft.document,
       open: (name) => this.#reopen(name),
       mayDrop: async () => !this.draft.dirty || await askDrop(this.#name) === true,
     });
-    const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab: arrow keys move it, Page Up and Page Down move it far, Home and End to its limits. Each has a field among the settings." });
+    const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab and move it with arrow keys. Each has a field among the settings." });
     this.body.replaceChildren(el("div", { class: "editor-grid" },
       el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node, this.plateHandles.legend, this.plateBinding.node), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node, hint)),
       el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Settings" }), this.form.node)),
@@ -117,10 +119,10 @@ export class ProfileView {
     if (profile !== undefined) await this.profileHistory.show(profile).catch((error) => this.#tell(error.message));
   }
 
-  #showDraft(text, sentence) {
+  #showDraft(sentence, change) {
     this.#told = sentence;
     announce(sentence);
-    this.draft.replace(text);
+    change();
   }
 
   /** Opens a profile of this name, or the one in play with null, whatever becomes of the draft; the list is another one. */
@@ -295,7 +297,7 @@ export class ProfileView {
   }
 
   async #print() {
-    await printSheet(this.draft.text).catch((error) => this.#tell(`Not printed: ${error.message}`));
+    await printSheet(this.draft.text).then(() => this.#tell("The sheet was given to the browser's print window."), (error) => this.#tell(`Not printed: ${error.message}`));
   }
 
   async #saveAs() {
@@ -313,6 +315,7 @@ export class ProfileView {
     if (this.text === undefined || frame === undefined) return;
     this.finger.draw(frame.contact, frame.uncertainty, null);
     this.forceHandles.forces.draw(frame.contact);
+    this.form.follow(frame);
   }
 
   /** Says at the top of every view when a draft is played. */

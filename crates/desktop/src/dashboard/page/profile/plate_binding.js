@@ -1,7 +1,7 @@
 // "Bind on the plate": press there, on the pad or in the picture, then the key or the gamepad's button.
 
 import { Capture } from "../fields/capture.js";
-import { seenFrom } from "../picture/geometry.js";
+import { partsAt, reached } from "../picture/touch.js";
 import { announce } from "../common/announce.js";
 import { button, el, say, set } from "../common/dom.js";
 import { controlsInWords } from "../common/words.js";
@@ -11,45 +11,27 @@ const WHERE = "Press on the pad, or in the picture, what is to be bound; Escape 
 /** What turns on, moves, and leaves is the page's, not the game's. */
 const FREE_KEYS = new Set(["Tab", "Shift"]);
 
-const within = (deg, from_deg, to_deg) => (((deg - from_deg) % 360) + 360) % 360 <= (((to_deg - from_deg) % 360) + 360) % 360;
-
-/** The names of zones, and of directions, that a place lies in. */
-function partsAt(sketch, at) {
-  const { deg, radius_mm } = seenFrom(sketch.centre_mm, at);
-  const zones = sketch.zones.filter(({ from_deg, to_deg, inner_radius_mm, outer_radius_mm }) => (
-    radius_mm >= inner_radius_mm && radius_mm <= outer_radius_mm && (from_deg === null || within(deg, from_deg, to_deg))));
-  const counts = sketch.dpad !== null && radius_mm >= sketch.dpad.centre_radius_mm;
-  const sectors = counts ? sketch.dpad.sectors.filter(({ from_deg, to_deg }) => within(deg, from_deg, to_deg)) : [];
-  return { zones: zones.map(({ name }) => name), sectors };
-}
-
-/** How far a press goes beyond what a button needs: 1 is just enough. */
-function share({ force, press_n }, pressed) {
-  const axis = force.replace("-", "");
-  return (force.startsWith("-") ? -1 : 1) * pressed[`${axis}_n`] / press_n;
-}
-
 const ofButton = ({ number, does }) => does.map(({ role, role_word, word }) => ({
   name: does.length === 1 ? word : `${role_word} ${word}`, path: (device) => ["button", number - 1, role, device] }));
 
 const ofDirection = (direction) => ({ name: direction, path: (device) => ["dpad", device, direction] });
+
+/** The part of the profile that a binding is of: "dpad", "button.0". */
+const groupOf = ({ path }) => path("").slice(0, path("")[0] === "dpad" ? 1 : 2).join(".");
 
 /**
  * What can be bound at a place of the picture. With a force it is what this press would do, else all that counts there.
  * @returns {{ name: string, path: (device: string) => (string | number)[] }[]}
  */
 export function bindingsAt(sketch, at, pressed = null) {
-  const { zones, sectors } = partsAt(sketch, at);
-  const directions = sectors.flatMap((sector) => sector.directions);
-  const here = sketch.buttons.filter(({ zone }) => zone !== null && (zones.includes(zone) || directions.includes(zone)));
-  const anywhere = sketch.buttons.filter(({ zone }) => zone === null);
+  const { zones, directions } = partsAt(sketch, at);
   if (pressed !== null) {
-    const reached = [...here, ...anywhere].map((one) => [share(one, pressed), one]).filter(([of]) => of >= 1);
-    reached.sort(([one], [other]) => other - one);
-    if (reached.length > 0) return ofButton(reached[0][1]);
+    const strongest = reached(sketch, pressed).filter(([of]) => of >= 1).sort(([one], [other]) => other - one)[0];
+    if (strongest !== undefined) return ofButton(strongest[1]);
   }
+  const here = sketch.buttons.filter(({ zone }) => zone !== null && (zones.includes(zone) || directions.includes(zone)));
   const own = [...here.flatMap(ofButton), ...directions.map(ofDirection)];
-  return own.length > 0 ? own : anywhere.flatMap(ofButton);
+  return own.length > 0 ? own : sketch.buttons.filter(({ zone }) => zone === null).flatMap(ofButton);
 }
 
 export class PlateBinding {
@@ -57,15 +39,26 @@ export class PlateBinding {
   #pressed = null;
   #state = "off";
 
-  /** @param {import("../picture/plate.js").Plate} plate @param {import("../fields/values.js").Values} values */
-  constructor(plate, values) {
-    Object.assign(this, { plate, values });
+  /**
+   * @param {import("../picture/plate.js").Plate} plate
+   * @param {import("../fields/values.js").Values} values
+   * @param {(group: string) => void} pick is told which part of the profile was pressed in the picture while nothing is to be bound
+   */
+  constructor(plate, values, pick) {
+    Object.assign(this, { plate, values, pick });
     this.start = button(LABEL, () => (this.#state === "off" ? this.#ask() : this.#leave("Left as it is.")), { id: "bind", class: "main", "aria-pressed": "false" });
     this.said = el("p", { class: "small" });
     this.choices = el("div", { class: "commands" });
     this.node = el("div", { class: "binding" }, this.start, this.said, this.choices);
-    plate.node.addEventListener("click", (event) => this.#state === "where" && this.#found(bindingsAt(this.#sketch, plate.at(event))));
+    plate.node.addEventListener("click", (event) => this.#clicked(event));
     addEventListener("keydown", (event) => this.#key(event), true);
+  }
+
+  #clicked(event) {
+    if (this.#sketch === null || event.target.closest(".handle")) return;
+    const found = bindingsAt(this.#sketch, this.plate.at(event));
+    if (this.#state === "where") this.#found(found);
+    else if (this.#state === "off" && found.length > 0) this.pick(groupOf(found[0]));
   }
 
   get #sketch() {

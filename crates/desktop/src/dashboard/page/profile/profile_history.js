@@ -4,6 +4,17 @@ import { announce } from "../common/announce.js";
 import { get, post, request, withToken } from "../link/api.js";
 import { button, el, say } from "../common/dom.js";
 import { askName, readProfile, writeProfile } from "./saving.js";
+import { undoing } from "./undo_save.js";
+
+const DAY = new Intl.DateTimeFormat(undefined, { dateStyle: "medium" });
+const TIME = new Intl.DateTimeFormat(undefined, { timeStyle: "short" });
+
+/** "today, 9:05 PM", "yesterday, …", "27 Nov 2026, …" */
+function moment(at_ms) {
+  const days = ["today", "yesterday"];
+  const ago = days.findIndex((_, back) => DAY.format(Date.now() - back * 86_400_000) === DAY.format(at_ms));
+  return `${days[ago] ?? DAY.format(at_ms)}, ${TIME.format(at_ms)}`;
+}
 
 const place = (name, rest = "") => `/api/profile/${encodeURIComponent(name)}${rest}`;
 
@@ -14,6 +25,8 @@ export class ProfileHistory {
   /**
    * @param {object} editor
    * @param {(text: string, sentence: string) => void} editor.draft shows a text as a draft
+   * @param {(changes: import("./draft.js").Change[], sentence: string) => void} editor.change changes values of the draft
+   * @param {() => object} editor.document what the draft says
    * @param {(name: string) => Promise<void>} editor.open opens a profile, once its draft may be dropped
    * @param {() => Promise<boolean>} editor.mayDrop whether a draft may be dropped
    */
@@ -28,10 +41,12 @@ export class ProfileHistory {
     this.decoderLabel = el("label", { class: "chooser", hidden: true }, "Decoder that goes along ", this.decoder);
     this.export = el("a", { class: "action", id: "export", download: "", text: "Export to a file" });
     this.file = el("input", { type: "file", id: "import", hidden: true, accept: ".tactpad,application/json", onchange: () => this.#import() });
-    this.node = el("div", { class: "card" }, el("h3", { text: "History and files" }),
-      el("div", { class: "commands" }, button("Duplicate …", () => this.#duplicate(), { id: "duplicate", class: "main" }), this.rename, this.remove, this.decoderLabel, this.export,
-        button("Import from a file …", () => this.file.click(), { id: "choose-import", class: "main" }), this.file),
-      this.message, this.undo, el("h4", { text: "History" }), this.history);
+    this.node = el("div", { class: "card" }, el("h3", { text: "History and files" }), this.message, this.undo,
+      el("h4", { text: "What was saved, and when" }), this.history,
+      el("h4", { text: "To another machine, and back" }),
+      el("div", { class: "commands" }, this.export, this.decoderLabel, button("Import from a file …", () => this.file.click(), { id: "choose-import", class: "main" }), this.file),
+      el("h4", { text: "This profile" }),
+      el("div", { class: "commands" }, button("Duplicate …", () => this.#duplicate(), { id: "duplicate", class: "main" }), this.rename, this.remove));
   }
 
   /** Shows the history of the profile that is open. */
@@ -43,8 +58,12 @@ export class ProfileHistory {
     await this.#listDecoders();
     this.#showExport();
     const { saves } = await get(place(name, "/history"));
-    const rows = saves.map((save) => this.#row(new Date(save.at_ms).toLocaleString(), changesOf(save, own), `/history/${save.id}`));
-    if (shipped && own) rows.push(this.#row("as shipped", "the profile inside the program", "/history/shipped"));
+    const rows = saves.map((save, index) => {
+      const path = `/history/${save.id}`;
+      const before = index + 1 < saves.length ? `/history/${saves[index + 1].id}` : "/history/shipped";
+      return this.#row(moment(save.at_ms), changesOf(save, own), path, own && save.changes.length > 0 ? before : null);
+    });
+    if (shipped && own) rows.push(this.#row("as shipped", "the profile inside the program", "/history/shipped", null));
     this.history.replaceChildren(...(rows.length === 0 ? [el("li", { class: "quiet", text: "None yet: the first save begins them." })] : rows));
   }
 
@@ -63,13 +82,25 @@ export class ProfileHistory {
     this.export.download = `${name}.tactpad`;
   }
 
-  #row(title, changes, path) {
+  /** A save; `before` is where the text before it is, if it can be undone. */
+  #row(title, changes, path, before) {
     const { name } = this.#profile;
+    const undo = button("Undo this", () => this.#do(() => this.#undoSave(title, path, before)), { "aria-label": `Undo this: what was saved ${title}` });
     const open = button("Open", () => this.#do(async () => {
       const { text } = await get(place(name, path));
       this.editor.draft(text, `${name} ${title} is in the editor as a draft: Save keeps it, Undo goes back.`);
     }), { "aria-label": `Open the save ${title}` });
-    return el("li", {}, el("span", {}, el("strong", { text: title }), " ", el("span", { class: "quiet", text: changes })), open);
+    return el("li", {}, el("span", {}, el("strong", { text: title }), " ", el("span", { class: "quiet", text: changes })), el("span", { class: "commands" }, before === null ? null : undo, open));
+  }
+
+  async #undoSave(title, path, before) {
+    const { name } = this.#profile;
+    const texts = await Promise.all([before, path].map((one) => get(place(name, one))));
+    const [was, became] = await Promise.all(texts.map(({ text }) => post("/api/draft", { text, changes: [] })));
+    const changes = undoing(was.document, became.document, this.editor.document());
+    if (changes === null) return this.editor.draft(texts[0].text, `${name} is in the editor as it was before ${title}: Save keeps it, Undo goes back.`);
+    if (changes.length === 0) return this.#tell("Nothing is left of it to undo: it was changed once more since.");
+    this.editor.change(changes, `What was saved ${title} is undone in the editor: Save keeps it, Undo goes back.`);
   }
 
   #tell(sentence, ...more) {

@@ -1,7 +1,8 @@
 // Saves profiles: over the file that was read, or under a new name; and asks when the file changed meanwhile.
 
 import { get, request } from "../link/api.js";
-import { button, el, say } from "../common/dom.js";
+import { ask } from "../common/ask.js";
+import { el, say } from "../common/dom.js";
 
 const NAME = /^[^./\\:]+$/;
 const address = (name) => `/api/profile/${encodeURIComponent(name)}`;
@@ -16,33 +17,6 @@ export const readProfile = (name) => get(address(name));
 export function writeProfile(name, text, version) {
   const condition = version === null ? { "If-None-Match": "*" } : { "If-Match": version };
   return request("PUT", address(name), text, condition);
-}
-
-/** A dialog of a question and answers; gives the answer, or null. */
-function ask(title, body, answers) {
-  const dialog = el("dialog", { class: "dialog", "aria-label": title });
-  return new Promise((done) => {
-    const close = (answer) => {
-      dialog.close();
-      dialog.remove();
-      done(answer);
-    };
-    dialog.append(el("h3", { text: title }), body, el("div", { class: "commands" },
-      ...answers.map(({ label, answer }) => button(label, () => close(answer()), { class: answers.length === 1 ? "main primary" : "main" })),
-      button("Cancel", () => close(null), { class: "main" })));
-    // Enter in a field does what the first button does.
-    dialog.addEventListener("keydown", (event) => {
-      if (event.key !== "Enter" || event.target.tagName !== "INPUT") return;
-      event.preventDefault();
-      close(answers[0].answer());
-    });
-    dialog.addEventListener("cancel", (event) => {
-      event.preventDefault();
-      close(null);
-    });
-    document.body.append(dialog);
-    dialog.showModal();
-  });
 }
 
 /** What to do with a file that changed meanwhile: "theirs", "overwrite" or null. */

@@ -91,7 +91,8 @@ fn look(browser: &Browser, views: &[&str], state: &str) {
                 }
                 if *view == "doctor" {
                     // It knows the bridge that it is asked from, and each finding can be copied.
-                    browser.wait("document.getElementById('doctor').innerText.includes('one is running')");
+                    browser
+                        .wait("document.getElementById('doctor').innerText.includes('a bridge is running')");
                     browser.wait("[...document.querySelectorAll('#doctor li')].every((it) => it.querySelector('button'))");
                 }
                 let beside = browser.run("return document.documentElement.scrollWidth - innerWidth");

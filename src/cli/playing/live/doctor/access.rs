@@ -55,7 +55,7 @@ pub(super) fn check_rules(root: &Path) -> Check {
     match ours.first() {
         None => Check {
             mend: Some(install_rules()),
-            ..Check::note(name, "none are installed; this lets you play without root")
+            ..Check::note(name, "tactpad's rules are not installed; with them you play without root")
         },
         Some(file) if number(file).is_none_or(|number| number >= SEAT_NUMBER) => Check::bad(
             name,
@@ -110,7 +110,10 @@ fn check_port(path: &str) -> Check {
 pub(super) fn check_pads(pads: &[FoundPad]) -> Vec<Check> {
     if pads.is_empty() {
         let mend = Some("tactpad demo".into());
-        return vec![Check { mend, ..Check::note("pad", "none is attached; this plays without one") }];
+        return vec![Check {
+            mend,
+            ..Check::note("pad", "no pad is attached; this command plays without one")
+        }];
     }
     let of_pad = |pad: &FoundPad| [Some(check_pad(pad)), check_firmware(pad)];
     pads.iter().flat_map(of_pad).flatten().collect()

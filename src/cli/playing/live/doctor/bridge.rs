@@ -28,12 +28,15 @@ pub(super) fn check_bridge(answer: &io::Result<String>, name: Option<&BridgeName
         }
         Err(error) if error.kind() == io::ErrorKind::TimedOut => Check::note(
             "bridge",
-            "one is there and does not answer: if it was stopped, continue it with `fg`",
+            "a bridge is there and does not answer: if it was stopped, continue it with `fg`",
         ),
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
-            Check::note("bridge", format!("none can be asked: {error}"))
+            Check::note("bridge", format!("no bridge can be asked: {error}"))
         }
-        Err(_) => Check { mend: Some("tactpad run".into()), ..Check::note("bridge", "none is running") },
+        Err(_) => Check {
+            mend: Some("tactpad run".into()),
+            ..Check::note("bridge", "no bridge is running; this command starts one")
+        },
     }
 }
 
@@ -52,7 +55,7 @@ fn bridge_message(status: &str) -> String {
     let text = |key: &str| status.get(key).and_then(Value::as_str).unwrap_or("unknown");
     let warning = ctl::warning(&status).map(|warning| format!(" ({warning})")).unwrap_or_default();
     let (profile, decoder) = (text("profile"), text("decoder"));
-    format!("one is running, profile {profile}, decoder {decoder}{warning}")
+    format!("a bridge is running with the profile {profile} and the decoder {decoder}{warning}")
 }
 
 #[cfg(test)]

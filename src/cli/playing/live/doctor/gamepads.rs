@@ -70,10 +70,16 @@ fn passes_over(release: &str) -> bool {
 pub(super) fn check_joydev(root: &Path) -> Check {
     let name = "browsers";
     if root.join("sys/module/joydev").exists() || root.join("dev/input/js0").exists() {
-        Check::good(name, "joydev is there, through which Chromium reads gamepads")
+        Check::good(name, "the kernel's module joydev is loaded: Chromium reads gamepads through it")
     } else {
         let mend = Some("sudo modprobe joydev".into());
-        Check { mend, ..Check::note(name, "joydev is not loaded; Chromium reads gamepads through it") }
+        Check {
+            mend,
+            ..Check::note(
+                name,
+                "the kernel's module joydev is not loaded, and Chromium reads gamepads through it",
+            )
+        }
     }
 }
 

@@ -198,6 +198,8 @@ fn a_control_is_named_and_seen_by_that_name() {
     }
     browser.run("window.print = () => { window.printed = true; }");
     browser.click("#print");
+    browser.wait("document.querySelector('dialog .sheet-shown svg')");
+    browser.run("document.querySelector('dialog .primary').click()");
     browser.wait("window.printed && document.querySelector('#sheet > svg').textContent.includes('A: hop')");
     browser.view("live");
     finger.press(0.0, 3.0, 3.0);
@@ -245,7 +247,7 @@ fn bind_on_the_plate(finger: &Finger, shown: &Shown, browser: &Browser) {
     let before = text(browser);
     browser.click("#bind");
     browser.keys(&[], &["\u{e00c}"]);
-    says("Left as it is.");
+    says("Nothing was changed.");
     assert_eq!(text(browser), before);
 }
 

@@ -23,6 +23,7 @@ fn each_view_is_taken_where_a_folder_is_named() {
         browser.view(view);
         if view == "profile" {
             browser.wait("document.querySelector('[data-handle]')");
+            browser.run("document.querySelector('[data-group=\"button.0\"] > summary').click()");
         }
         assert!(comes_true(|| shown.status()["contact"]["fz_n"].as_f64() > Some(1.0)), "{view}");
         browser.run("document.activeElement.blur()");

@@ -79,7 +79,7 @@ export class Capture {
     this.node.removeEventListener("blur", this.leave);
     this.node.textContent = this.label;
     this.node.classList.remove("listening");
-    announce(device === null ? "Left as it is." : `${controlsInWords(device, names)} is taken.`);
+    announce(device === null ? "Nothing was changed." : `${controlsInWords(device, names)} is taken.`);
     this.take(device === null ? null : { device, names });
   }
 }

@@ -6,6 +6,8 @@ import { NumberField } from "./number_field.js";
 import { nameOf, tidy } from "./schema.js";
 import { capital, choiceInWords, choiceWritten, controlsInWords, controlsWritten, pathInWords, settingAt } from "../common/words.js";
 
+/** Where to begin with what is off as usual. */
+const BEGINNINGS = { rest_n: 0.5, tremor_hz: 2 };
 const DEVICES = new Set(["gamepad", "keyboard", "pointer"]);
 let fields = 0;
 
@@ -80,7 +82,7 @@ export class Field {
       step,
       limits: () => this.values.limits(this.path),
       blank: required ? "" : ", or ↺ for the usual",
-      start: () => this.values.at(this.path) ?? this.about.min ?? 0,
+      start: () => this.values.at(this.path) ?? BEGINNINGS[this.about.key] ?? this.about.min ?? 0,
       take: (value) => this.#typed(value),
     }, { "aria-describedby": this.described, onfocusout: () => { this.#gesture = null; } });
     return this.number;
@@ -132,11 +134,18 @@ export class Field {
     const written = this.values.isWritten(this.path);
     this.back.hidden = !written || this.about.required;
     this.node.classList.toggle("unwritten", !written);
-    say(this.note, written || value === undefined ? "" : `as usual: ${this.#inWords(value)}`);
+    say(this.note, written ? "" : this.#unwritten(value));
     if (this.about.kind === "boolean") this.control.checked = value === true;
     else if (this.#numeric) this.number.show(written ? value : "");
     else this.#fill(this.control, !written ? "" : this.about.kind === "choice" ? value : this.#inWords(value));
     if (this.slider !== undefined) this.#fill(this.slider, value ?? this.about.min);
+  }
+
+  /** What holds while nothing is written. */
+  #unwritten(value) {
+    if (value !== undefined) return `as usual: ${this.#inWords(value)}`;
+    const beginning = BEGINNINGS[this.about.key];
+    return beginning === undefined ? "" : `off; ${this.#inWords(beginning)} is a good beginning`;
   }
 
   #fill(node, value) {

@@ -14,14 +14,14 @@ import { capital, choiceInWords, controlsOf, settingAt } from "../common/words.j
 /** Keys that stand in sight even while they are not written: handles and the usual choices. */
 const IN_SIGHT = new Set(["release_n", "release_force_n", "min_force_n", "mode", "centre_radius_mm", "radius_hysteresis_mm", "rotation_deg",
   "diagonal_deg", "centre_x_mm", "centre_y_mm", "from_deg", "to_deg", "inner_radius_mm", "outer_radius_mm", "hysteresis_mm", "left_handed", "filter_samples",
-  "min_press_ms", "slow_ms", "bounce_ms", "gamepad", "keyboard", "from_n", "full_n", "full_radius_mm", "speed_counts_per_s", "zone", "label", "up", "down", "left", "right", "class", "executable", "from"]);
+  "min_press_ms", "slow_ms", "bounce_ms", "rest_n", "tremor_hz", "gamepad", "keyboard", "from_n", "full_n", "full_radius_mm", "speed_counts_per_s", "zone", "label", "up", "down", "left", "right", "class", "executable", "from"]);
 /** Keys that need another one: they stand in sight beside it, and go with it. */
 const IN_SIGHT_BESIDE = { long_press_ms: "hold", permissive_hold: "hold", hold_on_other_key_press: "hold", double_press_ms: "double", hard_press_n: "hard", hard_release_n: "hard", skip: "hard", skip_ms: "hard", dwell_mm: "dwell_ms" };
 const EFFECTS = ["out", "tap", "double", "hold", "light", "hard"];
 /** Settings of the profile that fit it to the hand. */
 const OF_HAND = new Set(["left_handed", "centre_x_mm", "centre_y_mm", "filter_samples", "min_press_ms"]);
 /** What people look for most stands first. */
-const FIRST = new Set(["press_n", "rotation_deg"]);
+const FIRST = new Set(["press_n", "rotation_deg", "rest_n", "tremor_hz"]);
 /** What is inside of parts that say nothing by themselves. */
 const HINTS = {
   hand: "left or right hand, its middle, smoothing, shortest press", access: "a resting hand, trembling, presses too slow or twice",
@@ -177,7 +177,9 @@ export class Form {
     const node = el("details", { class: kind, "data-group": name, open: this.#opened.get(name) ?? open }, el("summary", {}, title), ...children);
     node.addEventListener("toggle", () => {
       this.#opened.set(name, node.open);
-      if (kind === "group" && node.isConnected) this.light(node.open ? this.#partOf(name) : null);
+      if (kind !== "group" || !node.isConnected) return;
+      const open = node.open ? node : [...this.node.querySelectorAll(".group[open]")].at(-1);
+      this.light(open === undefined ? null : this.#partOf(open.dataset.group));
     });
     return node;
   }
@@ -231,7 +233,7 @@ export class Form {
 
   #effects(path, value) {
     const present = EFFECTS.filter((effect) => value[effect] !== undefined);
-    const parts = present.map((effect) => this.#part([...path, effect], capital(settingAt([...path, effect]).word), () => this.#removeEffect(path, effect)));
+    const parts = present.map((effect) => this.#part([...path, effect], capital(settingAt([...path, effect]).word), present.length === 1 ? null : () => this.#removeEffect(path, effect)));
     const fitting = present.length === 0 ? ["out", "tap"] : { out: [], tap: ["double", "hold"], light: ["hard"] }[present[0]] ?? [];
     const adders = fitting.filter((effect) => !present.includes(effect))
       .map((effect) => [effect, `+ ${settingAt([...path, effect]).word}`])

@@ -84,6 +84,7 @@ export class LiveView {
         column(card("Pad", this.status.setup, scroller("Finger", this.readout.node), this.scale, this.freshness), this.channelsCard),
         column(card("Events", this.lanes.node), card("Counters", this.status.counters)),
         column(card("Latency", this.latency.node))));
+    this.#drawHeld({ held: [], held_names: [] });
     rememberFold(this.fold, "measurements");
     this.fold.addEventListener("toggle", () => this.#drawMeasured());
     section.append(this.status.node, el("div", { class: "live-grid" },
@@ -177,7 +178,8 @@ export class LiveView {
     const { state, sentence, output } = this.message?.status ?? {};
     if (state === undefined) return ["tactpad does not answer."];
     const plays = state === "playing" ? "tactpad plays: what is pressed goes on." : `${sentence ?? state}: as long as that is so, nothing is pressed.`;
-    return [plays, this.lastTouch.sentence(this.sketch ?? null), `What is pressed goes to: ${output}.`];
+    const help = state === "waiting" ? ["If it is plugged in, try another cable and another socket of this machine."] : [];
+    return [plays, ...help, this.lastTouch.sentence(this.sketch ?? null), `What is pressed goes to: ${output}.`];
   }
 
   #drawHeld({ held, held_names }) {

@@ -50,6 +50,7 @@ export class Status {
       el("div", { class: "commands" },
         el("label", { class: "chooser" }, "Profile in play ", this.choice),
         button("Next profile", () => this.#next(), { id: "next-profile", class: "main" }),
+        el("a", { class: "action", href: "#profile", text: "Change its settings" }),
         button("Measure the zero", () => command("/api/tare", "Measuring the zero: leave the pad alone."), { id: "tare", class: "main" }),
         button("Release everything", () => command("/api/panic", "Everything is released."), { id: "panic", class: "main" })),
       this.#list(PLAYED), this.error);

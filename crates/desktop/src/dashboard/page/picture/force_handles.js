@@ -22,7 +22,7 @@ export class ForceHandles {
   refresh() {
     const { sketch } = this.values.draft;
     if (sketch === null) return;
-    const shape = JSON.stringify([sketch.dpad === null, sketch.pointer === null, sketch.triggers.length, sketch.buttons.map(({ force, hard_press_n }) => [force, hard_press_n === null])]);
+    const shape = JSON.stringify([sketch.dpad === null, sketch.pointer === null, sketch.triggers.length, sketch.buttons.map(({ force, hard_press_n }) => [force, hard_press_n === null]), thresholdRows(sketch).map(({ name }) => name)]);
     if (shape !== this.#shape) this.#make(sketch, shape);
     else if (!this.#handles.some((handle) => handle.dragged)) this.forces.rescale(sketch);
     for (const handle of this.#handles) handle.refresh();

@@ -68,6 +68,7 @@ class Meter {
     this.node = el("div", { class: `meter ${sides === 2 ? "two-sided" : ""}` },
       el("div", { class: "meter-head" }, el("strong", { text: name }), this.meaning, this.value),
       el("div", { class: "meter-body" }, el("div", { class: "meter-track" }, this.fill), this.rows, this.scale, el("div", { class: "meter-cursor-lane" }, this.cursor)));
+    this.setForce(null);
   }
 
   /** Says whether the pad measures this force. */

@@ -115,6 +115,7 @@ export class Finger {
     this.dot = svg("circle", { id, class: "contact", r: 0.9, cx: 0, cy: 0 });
     this.all = svg("g", {}, this.ellipse, this.shear, this.dot);
     plate.layers.finger.append(...this.trail, this.all);
+    this.draw(null, null, null);
   }
 
   /** @param {object | null} contact @param {object | null} uncertainty @param {import("./trace.js").Trace | null} trace */

@@ -4,6 +4,7 @@ import { announce } from "../common/announce.js";
 import { get } from "../link/api.js";
 import { button, el, say } from "../common/dom.js";
 import { Draft } from "./draft.js";
+import { LastTouch } from "../live/last_touch.js";
 import { ForceHandles } from "../picture/force_handles.js";
 import { Form } from "../fields/form.js";
 import { Finger, Plate } from "../picture/plate.js";
@@ -61,7 +62,7 @@ export class ProfileView {
     this.message = el("p", { class: "editor-message", role: "status" });
     this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
       el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert,
-      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), button("Print …", () => this.#print(), { id: "print", class: "main" }), el("label", { class: "check main" }, this.live, "Play the draft live"), this.state, this.message));
+      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), button("Print …", () => this.#print(), { id: "print", class: "main" }), el("label", { class: "check main" }, this.live, "Play changes at once"), this.state, this.message));
   }
 
   /** Makes what needs the schema, once. */
@@ -83,9 +84,11 @@ export class ProfileView {
       open: (name) => this.#reopen(name),
       mayDrop: async () => !this.draft.dirty || await askDrop(this.#name) === true,
     });
+    this.lastTouch = new LastTouch();
+    this.touched = el("p", { class: "small" });
     const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab and move it with arrow keys. Each has a field among the settings." });
     this.body.replaceChildren(el("div", { class: "editor-grid" },
-      el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node, this.plateHandles.legend, this.plateBinding.node), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node, hint)),
+      el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node, this.plateHandles.legend, this.plateBinding.node), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node, this.touched, hint)),
       el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Settings" }), this.form.node)),
       el("div", { class: "area-text" }, this.text.node, this.rewind.node, this.profileHistory.node)));
   }
@@ -192,7 +195,7 @@ export class ProfileView {
     const saved = await readProfile(profile).catch(() => null);
     this.#opened(profile, version, saved?.text ?? "", text);
     const changed = saved?.version === version ? "" : " The file was changed meanwhile: Save asks before it writes.";
-    this.#told = `Your draft of ${profile} is here as you left it at ${new Date(at_ms).toLocaleTimeString()}. It is not played before you tick “Play the draft live”; Revert drops it.${changed}`;
+    this.#told = `Your draft of ${profile} is here as you left it at ${new Date(at_ms).toLocaleTimeString()}. It is not played before you tick “Play changes at once”; Revert drops it.${changed}`;
     announce(this.#told);
     await this.#showHistory();
   }
@@ -240,10 +243,10 @@ export class ProfileView {
     const { dirty, history, valid } = this.draft;
     this.#offer(this.undo, history.canUndo);
     this.#offer(this.redo, history.canRedo);
-    this.#offer(this.save, dirty);
+    this.#offer(this.save, dirty && valid);
     this.#offer(this.revert, dirty);
     this.section.classList.toggle("stale", this.draft.stale);
-    say(this.state, `${dirty ? "● not saved" : "✓ saved"}${valid ? "" : ", ✕ has errors"}`);
+    say(this.state, `${dirty ? "● not saved" : "✓ saved"}${valid ? "" : ", ✕ has errors: see the profile's text"}`);
   }
 
   #allowPreview(allowed) {
@@ -277,8 +280,9 @@ export class ProfileView {
       this.#name = name;
       this.#version = answer.version;
       this.draft.markSaved(text);
-      this.#tell(`Saved to ${answer.path}.`);
-      await this.#list();
+      const playing = await this.#list();
+      this.#tell(playing === name ? "Saved, and in play." : "Saved. To play it, choose it on the page Live.");
+      this.message.title = answer.path;
       await this.#showHistory();
     } catch (error) {
       await this.#notSaved(error, name, version);
@@ -297,7 +301,7 @@ export class ProfileView {
   }
 
   async #print() {
-    await printSheet(this.draft.text).then(() => this.#tell("The sheet was given to the browser's print window."), (error) => this.#tell(`Not printed: ${error.message}`));
+    await printSheet(this.draft.text).then((given) => given && this.#tell("The sheet was given to the browser's print window."), (error) => this.#tell(`Not printed: ${error.message}`));
   }
 
   async #saveAs() {
@@ -308,6 +312,7 @@ export class ProfileView {
   /** Takes a frame, drawn or not. */
   take(frame) {
     this.plateBinding?.take(frame);
+    this.lastTouch?.take(frame);
   }
 
   /** Follows the finger. */
@@ -316,6 +321,7 @@ export class ProfileView {
     this.finger.draw(frame.contact, frame.uncertainty, null);
     this.forceHandles.forces.draw(frame.contact);
     this.form.follow(frame);
+    say(this.touched, this.lastTouch.sentence(this.draft.sketch));
   }
 
   /** Says at the top of every view when a draft is played. */
@@ -323,8 +329,8 @@ export class ProfileView {
     if (preview === this.#previewed) return;
     this.#previewed = preview;
     const notice = document.getElementById("preview-notice");
-    const sentence = "The preview is being played, not saved.";
-    notice.replaceChildren(...(preview ? [el("span", { text: `◐ ${sentence}` }), button("Back to the file", () => this.preview.end())] : []));
+    const sentence = "What you changed is in play, and not saved yet.";
+    notice.replaceChildren(...(preview ? [el("span", { text: `◐ ${sentence}` }), button("Play what is saved", () => this.preview.end())] : []));
     announce(preview ? sentence : "The saved profile is played.");
   }
 }

@@ -1,4 +1,4 @@
-// "Bind on the plate": press there, on the pad or in the picture, then the key or the gamepad's button.
+// "Change a key on the plate": press there, on the pad or in the picture, then the key or the gamepad's button.
 
 import { Capture } from "../fields/capture.js";
 import { partsAt, reached } from "../picture/touch.js";
@@ -6,8 +6,9 @@ import { announce } from "../common/announce.js";
 import { button, el, say, set } from "../common/dom.js";
 import { controlsInWords } from "../common/words.js";
 
-const LABEL = "Bind on the plate";
-const WHERE = "Press on the pad, or in the picture, what is to be bound; Escape leaves it.";
+const UNCHANGED = "Nothing was changed.";
+const LABEL = "Change a key on the plate";
+const WHERE = "Press on the pad, or in the picture, where another key or button shall come; Escape ends this.";
 /** What turns on, moves, and leaves is the page's, not the game's. */
 const FREE_KEYS = new Set(["Tab", "Shift"]);
 
@@ -46,10 +47,12 @@ export class PlateBinding {
    */
   constructor(plate, values, pick) {
     Object.assign(this, { plate, values, pick });
-    this.start = button(LABEL, () => (this.#state === "off" ? this.#ask() : this.#leave("Left as it is.")), { id: "bind", class: "main", "aria-pressed": "false" });
+    this.start = button(LABEL, () => (this.#state === "off" ? this.#ask() : this.#leave()), { id: "bind", class: "main", "aria-pressed": "false" });
     this.said = el("p", { class: "small" });
     this.choices = el("div", { class: "commands" });
     this.node = el("div", { class: "binding" }, this.start, this.said, this.choices);
+    // What was said is soon no longer so.
+    values.draft.addEventListener("text", () => this.said.textContent === UNCHANGED && say(this.said, ""));
     plate.node.addEventListener("click", (event) => this.#clicked(event));
     addEventListener("keydown", (event) => this.#key(event), true);
   }
@@ -86,7 +89,7 @@ export class PlateBinding {
     announce(WHERE);
   }
 
-  #leave(sentence) {
+  #leave(sentence = UNCHANGED) {
     this.#go("off", sentence);
     announce(sentence);
     this.start.focus();
@@ -97,7 +100,7 @@ export class PlateBinding {
     if (!this.#asks || FREE_KEYS.has(event.key)) return;
     event.preventDefault();
     event.stopPropagation();
-    if (event.key === "Escape") this.#leave("Left as it is.");
+    if (event.key === "Escape") this.#leave();
   }
 
   /** Follows the pad, frame by frame: a press is over once nothing is held any more. */
@@ -128,7 +131,7 @@ export class PlateBinding {
   }
 
   #take({ name, path }, taken) {
-    if (taken === null) return this.#go("off", "Left as it is.");
+    if (taken === null) return this.#leave();
     const { device, names } = taken;
     this.values.write(path(device), names, {});
     const { output } = this.#sketch;

@@ -39,7 +39,7 @@ export class ProfileHistory {
     this.remove = button("Delete", () => this.#delete(), { id: "delete", class: "main" });
     this.decoder = el("select", { id: "export-decoder", class: "main", onchange: () => this.#showExport() });
     this.decoderLabel = el("label", { class: "chooser", hidden: true }, "Decoder that goes along ", this.decoder);
-    this.export = el("a", { class: "action", id: "export", download: "", text: "Export to a file" });
+    this.export = el("a", { class: "action", id: "export", download: "", text: "Export to a file", onclick: () => this.#exported() });
     this.file = el("input", { type: "file", id: "import", hidden: true, accept: ".tactpad,application/json", onchange: () => this.#import() });
     this.node = el("div", { class: "card" }, el("h3", { text: "History and files" }), this.message, this.undo,
       el("h4", { text: "What was saved, and when" }), this.history,
@@ -82,14 +82,20 @@ export class ProfileHistory {
     this.export.download = `${name}.tactpad`;
   }
 
+  #exported() {
+    const sentence = `${this.export.download} is downloaded, with what is saved: on the other machine choose “Import from a file …” here.`;
+    this.#tell(sentence);
+    announce(sentence);
+  }
+
   /** A save; `before` is where the text before it is, if it can be undone. */
   #row(title, changes, path, before) {
     const { name } = this.#profile;
     const undo = button("Undo this", () => this.#do(() => this.#undoSave(title, path, before)), { "aria-label": `Undo this: what was saved ${title}` });
-    const open = button("Open", () => this.#do(async () => {
+    const open = button("Open as it was then", () => this.#do(async () => {
       const { text } = await get(place(name, path));
-      this.editor.draft(text, `${name} ${title} is in the editor as a draft: Save keeps it, Undo goes back.`);
-    }), { "aria-label": `Open the save ${title}` });
+      this.editor.draft(text, `${name} is in the editor as it was after ${title}, without what was changed later: Save keeps it, Undo goes back.`);
+    }), { "aria-label": `Open as it was then: ${title}` });
     return el("li", {}, el("span", {}, el("strong", { text: title }), " ", el("span", { class: "quiet", text: changes })), el("span", { class: "commands" }, before === null ? null : undo, open));
   }
 

@@ -17,10 +17,11 @@ export class TextPane {
       "aria-label": "Text of the profile", "aria-describedby": "diagnostics-count", oninput: () => this.#typed() });
     this.numbers = el("pre", { class: "line-numbers", "aria-hidden": "true" });
     this.count = el("span", { id: "diagnostics-count", class: "quiet" });
+    this.heading = el("h4", { text: "What is wrong with it" });
     this.list = el("ul", { id: "diagnostics", class: "diagnostics" });
     this.area.addEventListener("scroll", () => { this.numbers.scrollTop = this.area.scrollTop; });
     this.node = el("details", { class: "card text-pane" }, el("summary", {}, el("strong", { text: "The profile's text" }), " ", this.count),
-      el("div", { class: "text-frame" }, this.numbers, this.area), el("h4", { text: "What is wrong with it" }), this.list);
+      el("div", { class: "text-frame" }, this.numbers, this.area), this.heading, this.list);
   }
 
   #typed() {
@@ -60,6 +61,7 @@ export class TextPane {
     this.area.setAttribute("aria-invalid", String(errors > 0));
     if (errors > 0) this.node.open = true;
     say(this.count, diagnostics.length === 0 ? "✓ Nothing is wrong." : `${plural(errors, "error")}, ${plural(diagnostics.length - errors, "warning")}.`);
+    this.heading.hidden = diagnostics.length === 0;
     this.list.replaceChildren(...diagnostics.map((one) => this.#diagnostic(one)));
   }
 

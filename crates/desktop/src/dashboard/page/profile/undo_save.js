@@ -20,8 +20,17 @@ export function undoing(before, after, present) {
   const [was, became, is] = [before, after, present].map((document) => leaves(document));
   const places = [...new Set([...was.keys(), ...became.keys()])];
   // What was changed once more since stays.
-  return places.filter((place) => was.get(place) !== became.get(place) && is.get(place) === became.get(place)).map((place) => {
+  const changes = places.filter((place) => was.get(place) !== became.get(place) && is.get(place) === became.get(place)).map((place) => {
     const path = JSON.parse(place);
-    return { table: path.slice(0, -1), key: path.at(-1), value: was.get(place) ?? null };
+    return was.has(place) ? changeOf(path, was.get(place)) : changeOf(path.slice(0, missing(before, path)), null);
   });
+  return [...new Map(changes.map((change) => [JSON.stringify(change), change])).values()];
+}
+
+const changeOf = (path, value) => ({ table: path.slice(0, -1), key: path.at(-1), value });
+
+/** How much of a path there is to name the first table, or key, that a document lacks. */
+function missing(document, path) {
+  let inner = document;
+  return 1 + path.findIndex((part) => (inner = inner[part]) === undefined);
 }

@@ -8,7 +8,7 @@ import { LastTouch } from "../live/last_touch.js";
 import { ForceHandles } from "../picture/force_handles.js";
 import { Form } from "../fields/form.js";
 import { Finger, Plate } from "../picture/plate.js";
-import { PlateBinding } from "./plate_binding.js";
+import { PlateBinding } from "../picture/plate_binding.js";
 import { PlateHandles } from "../picture/plate_handles.js";
 import { Preview } from "./preview.js";
 import { ProfileHistory } from "./profile_history.js";

@@ -1,7 +1,7 @@
 // "Change a key on the plate": press there, on the pad or in the picture, then the key or the gamepad's button.
 
 import { Capture } from "../fields/capture.js";
-import { partsAt, reached } from "../picture/touch.js";
+import { partsAt, reached } from "./touch.js";
 import { announce } from "../common/announce.js";
 import { button, el, say, set } from "../common/dom.js";
 import { controlsInWords } from "../common/words.js";
@@ -41,7 +41,7 @@ export class PlateBinding {
   #state = "off";
 
   /**
-   * @param {import("../picture/plate.js").Plate} plate
+   * @param {import("./plate.js").Plate} plate
    * @param {import("../fields/values.js").Values} values
    * @param {(group: string) => void} pick is told which part of the profile was pressed in the picture while nothing is to be bound
    */

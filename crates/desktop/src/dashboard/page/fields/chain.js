@@ -39,6 +39,7 @@ function settingsOf(path, value) {
 export class Chain {
   #shown = "";
   #seen_ms = -Infinity;
+  #look = "";
 
   /**
    * @param {(string | number)[]} path of the table
@@ -73,8 +74,12 @@ export class Chain {
   mark(share, held_names) {
     const now_ms = performance.now();
     if (this.words.some((word) => held_names.includes(word))) this.#seen_ms = now_ms;
-    this.node.style.setProperty("--share", Math.min(Math.max(share, 0), 1).toFixed(2));
-    this.node.classList.toggle("held", now_ms - this.#seen_ms < SEEN_MS);
+    const look = [Math.min(Math.max(share, 0), 1).toFixed(2), now_ms - this.#seen_ms < SEEN_MS];
+    // Each frame asks; what looks the same costs nothing.
+    if (look.join() === this.#look) return;
+    this.#look = look.join();
+    this.node.style.setProperty("--share", look[0]);
+    this.node.classList.toggle("held", look[1]);
   }
 }
 

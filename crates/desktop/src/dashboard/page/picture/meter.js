@@ -158,6 +158,7 @@ export class Forces {
         el("p", { class: "meter-row-head" }, el("span", { text: row.name }), meter.figures[index]),
         el("div", { class: "meter-line" }, meter.spans[index], ...row.marks.map((mark) => this.makeMark(meter, row, mark))))));
       meter.placeSpans(own);
+      meter.node.classList.toggle("bare", own.length === 0);
     }
     this.describe(this.has_shear);
   }

@@ -39,7 +39,7 @@ fn session() {
 fn what_cannot_be_measured_is_refused_with_a_way_out() {
     for (line, wanted) in [
         ("virtual --weight-g 1", "take a weight of 2 to 1000 g"),
-        ("virtual --weight-g nan", "take a weight of 2 to 1000 g"),
+        ("virtual --weight-g nan", "write grams, such as 200"),
         ("load-cells:/dev/null", "`tactpad run` and its description"),
         ("serial:/nowhere", "/nowhere"),
         ("virtual --wiring m0x=m1y", "m0x=m1y,m1y=m0x"),

@@ -39,7 +39,7 @@ fn what_cannot_be_done_is_refused_with_a_way_out() {
         ("--sheet marks.png", "let its name end in .svg or .pdf"),
         ("--sheet marks.svg --weight-g 200", "--out"),
         ("--pad virtual --out d --weight-g 2", "2 g is no weight for this pad: take one of 30 to 1000 g"),
-        ("--pad virtual --out d --weight-g nan", "no weight for this pad"),
+        ("--pad virtual --out d --weight-g nan", "write grams, such as 200"),
         ("--pad virtual --out d --weight-g 200kg", "write grams, such as 200, 200g or 8.5"),
         ("--pad virtual --out d --weight-g 2,5g", "2.5 g is no weight for this pad"),
         ("--pad virtual --out -", "name a file"),

@@ -112,7 +112,7 @@ fn what_does_not_belong_together_is_refused() {
             "--plan play --weight-g 900 --weights w.csv",
             "--weight-g is 900, which presses with 8.83 N: take a weight",
         ),
-        ("--plan play --weight-g nan --weights w.csv", "--weight-g is NaN"),
+        ("--plan play --weight-g nan --weights w.csv", "write grams, such as 200"),
         ("--plan play --weight-g 90 --weights o.cap", "--out and --weights name one file"),
         ("--plan play --within-mm 30", "--within-mm is 30, and a finger stays on this plate up to 29 mm"),
         ("--plan play --within-mm -1", "--within-mm is -1"),

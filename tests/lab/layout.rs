@@ -100,7 +100,7 @@ fn bad_arguments_are_one_sentence_and_exit_2() {
         ("--radii 30,30,1e9", "R3 is 1000000000 mm"),
         ("--radii 30,30,30 --threshold 1.5", "a share above 0 and below 1"),
         ("--radii 30,30,30 --noise-uv -6", "microvolts above 0"),
-        ("--radii 30,30,30 --seed -1", "invalid digit"),
+        ("--radii 30,30,30 --seed -1", "write a whole number from 0 up"),
         ("--modules 0", "numbers from 1 to 12"),
         ("--modules 3,3", "3 is there twice"),
         ("--modules 3,12", "12 modules at the device's radius would lie over each other: ask for 11 at most"),

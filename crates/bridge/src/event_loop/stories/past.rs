@@ -429,3 +429,9 @@ fn another_message_ends_what_bytes_ran_into() {
         [(0, Mend), (0, Stall(true)), (0, Event::Rubbish(685)), (0, Touch(RIGHT)), (0, Event::Identify(0))];
     holds(&[&begun[..], &[(1_000, Stall(false)), (1, Touch(RIGHT))]].concat());
 }
+
+#[test]
+fn a_link_that_is_lost_forgets_what_bytes_ran_into() {
+    let begun = [(0, Mend), (0, Stall(true)), (0, Event::Rubbish(759)), (0, Touch(RIGHT))];
+    holds(&[&begun[..], &[(361, Stall(false)), (1, Ask(Wish::Panic))]].concat());
+}

@@ -76,8 +76,9 @@ pub(super) struct World {
     unconfirmed_restart_frames: u32,
     before: Option<(Sample, HostInstant)>,
     damage: u32,
-    /// The next frame goes on where other bytes ended.
+    /// The next frame goes on where other bytes ended, unless the link is lost before it comes.
     is_joined: bool,
+    was_heard: bool,
     loss_permille: u32,
     damage_permille: u32,
     off: [Option<(Off, i32)>; 9],
@@ -140,6 +141,7 @@ impl World {
             before: None,
             damage: 0,
             is_joined: false,
+            was_heard: false,
             loss_permille: 0,
             damage_permille: 0,
             off: [None; 9],
@@ -450,6 +452,10 @@ impl World {
             page.take();
         }
         self.note_causes();
+        let is_heard = self.play.bridge.driver.pipeline.is_heard();
+        if std::mem::replace(&mut self.was_heard, is_heard) && !is_heard {
+            self.is_joined = false;
+        }
         if self.frozen_until.is_some() {
             return Ok(());
         }

@@ -61,7 +61,7 @@ fn an_earlier_save_and_the_shipped_profile_come_back_as_drafts() {
     save(&shown, &browser, "contra", "2.75");
     browser.wait("document.querySelectorAll('.history li').length === 3");
     let told = history(&browser);
-    assert!(told.contains("as it is now: button 1, press force from 2.5 N to 2.75 N"), "{told}");
+    assert!(told.contains("button 1, press force from 2.5 N to 2.75 N"), "{told}");
     assert!(told.contains("button 1, press force from 2 N to 2.5 N"), "{told}");
     open(&browser, 1);
     let shows = |press_n: &str| {

@@ -112,7 +112,7 @@ fn what_is_no_play_is_refused_in_one_sentence() {
         ("diagnose --play damaged.play --against short.cap", "damaged.play is damaged"),
         ("diagnose --play short.cap --against text.cap", "text.cap "),
         ("diagnose --play text.cap --against short.cap", "text.cap "),
-        ("diagnose --play short.cap --against short.cap", "tenths of a second with a press"),
+        ("diagnose --play short.cap --against short.cap", "s in all, and 20 s are the least"),
         ("diagnose --play none.cap --against short.cap", "none.cap "),
     ] {
         let said = refused(folder, line);

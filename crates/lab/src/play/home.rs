@@ -9,7 +9,7 @@ use crate::calibration::fit::search::Report;
 use crate::calibration::fit::{Calibration, FitError, fit_known};
 use crate::calibration::result::known::PressPrecision;
 use crate::play::weights::{Placement, PlacementError};
-use crate::play::windows::{PlayWindows, Window};
+use crate::play::windows::{PlayWindows, WINDOW_S, Window};
 use crate::tangent::SimulatedPad;
 
 /// Fewer presses are no play; so many placements of a weight do without.
@@ -74,8 +74,9 @@ impl fmt::Display for HomeError {
             }
             Self::TooFew { presses } => write!(
                 f,
-                "it has {presses} tenths of a second with a press of 0.3 N or more, and {PRESSES_MIN} are the least; press for \
-                 a minute or two, all over the plate"
+                "the finger presses with 0.3 N or more for {:.1} s in all, and {:.1} s are the least; press for a minute or two, all over the plate",
+                *presses as f64 * WINDOW_S,
+                PRESSES_MIN as f64 * WINDOW_S
             ),
             Self::Fit(error) => error.fmt(f),
         }
@@ -186,7 +187,8 @@ impl PressedPlaces {
             .filter_map(|it| windows.iter().find(|window| holds(it, window)).map(|window| window.stretch))
             .collect();
         let firm = || windows.iter().filter(|it| it.is_firm() && !weighed.contains(&it.stretch));
-        let seconds = firm().map(|it| it.end_s - it.begin_s).sum();
+        // An empty sum is −0.0.
+        let seconds = 0.0 + firm().map(|it| it.end_s - it.begin_s).sum::<f64>();
         let mut by_region = [0; REGIONS.len()];
         firm()
             .filter(|window| window.is_press())

@@ -9,11 +9,11 @@ use super::document::Finding;
 use super::text::{cause, sized};
 use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::quoted;
-use tactpad::counted::counted;
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report;
 use tactpad::lab::effect::Effect;
 use tactpad::lab::play::change::DetectedChanges;
+use tactpad::lab::play::windows::WINDOW_S;
 use tactpad::quantity::{CHANNEL_NAMES, MODULES};
 
 /// Version of the document's form.
@@ -174,6 +174,11 @@ fn told(finding: &report::Finding) -> String {
     }
 }
 
+/// How long a finger pressed in so many windows.
+fn pressed(windows: usize) -> String {
+    format!("{:.0} s of presses", windows as f64 * WINDOW_S)
+}
+
 /// The report for people.
 pub(crate) struct ChangesText<'c>(pub(crate) &'c Comparison<'c>);
 
@@ -182,20 +187,13 @@ impl fmt::Display for ChangesText<'_> {
         let Self(Comparison { found, since, play }) = self;
         let (earlier, later) = found.presses;
         let (held, when) = match (since, earlier) {
-            (Reference::Calibrated(decoder), _) => (
-                format!("{} against {}", counted(later, "press"), decoder.display()),
-                " since it was calibrated",
-            ),
-            (Reference::Played, earlier) => (
-                format!(
-                    "{} against {}",
-                    counted(later, "press"),
-                    counted(earlier.unwrap_or_default(), "earlier one")
-                ),
-                "",
-            ),
+            (Reference::Calibrated(decoder), _) => {
+                (format!("{} against {}", pressed(later), decoder.display()), " since it was calibrated")
+            }
+            (Reference::Played, earlier) => {
+                (format!("{} against {} before", pressed(later), pressed(earlier.unwrap_or_default())), "")
+            }
         };
-        let held = format!("{held}, in tenths of a second");
         let least = 100.0 * found.least_module_gain;
         let first = match found.findings.as_slice() {
             [] => format!(

@@ -27,7 +27,7 @@ export class DoctorView {
       const { checks } = await get("/api/doctor");
       const [bad, notes] = ["bad", "note"].map((finding) => checks.filter((check) => check.finding === finding).length);
       say(this.about, `In the way on this machine: ${bad === 0 ? "nothing" : bad}. Worth knowing: ${notes === 0 ? "nothing" : notes}. Commands are for a terminal; who looks after this machine can run them.`);
-      this.list.replaceChildren(...checks.map(entry));
+      this.list.replaceChildren(...["bad", "note", "good"].flatMap((finding) => checks.filter((check) => check.finding === finding)).map(entry));
     } catch (error) {
       say(this.about, error.message);
     }

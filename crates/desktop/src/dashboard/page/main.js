@@ -18,7 +18,8 @@ import { Trace } from "./picture/trace.js";
 import { loadWords } from "./common/words.js";
 
 const NO_WAY_IN = "This page does not find its bridge: open it from the tray, or with `tactpad ctl dashboard`.";
-const LOST = "tactpad has ended, or it stands still. Start it again as you did before: this page goes on by itself, and a draft is kept.";
+const LOST = "tactpad has ended. Start it again, or ask whoever started it: this page goes on by itself, and a draft is kept.";
+const STALLED = "No answer from tactpad for some seconds: the machine is busy, or the program stands still or has ended. This page goes on by itself, and a draft is kept.";
 const SHUT = "tactpad is there, and lets no further page in: close another one.";
 
 const live = new Live();
@@ -77,6 +78,7 @@ function followConnection(views) {
     views.profile.again();
   });
   live.on("lost", () => clear(views, LOST));
+  live.on("stalled", () => clear(views, STALLED));
   live.on("shut", () => clear(views, SHUT));
   live.on("moved", (origin) => move(views, origin));
 }

@@ -21,7 +21,7 @@ use crate::calibration::fit::search::Report;
 use crate::diagnosis::model::mechanics::{at_place, changes};
 use crate::diagnosis::report::Finding;
 use crate::effect::Effect;
-use crate::play::windows::{PlayWindows, Window};
+use crate::play::windows::{PlayWindows, WINDOW_S, Window};
 use tactpad_core::pad::changes::FieldChange;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
@@ -99,9 +99,9 @@ impl fmt::Display for ChangeError {
             }
             Self::TooFew(_, presses) => write!(
                 f,
-                "it has {presses} tenths of a second with a press of 0.3 N or more, and {PRESSES_MIN} are the least; play \
-                 for so long that there are {} more",
-                PRESSES_MIN - presses
+                "the finger presses with 0.3 N or more for {:.1} s in all, and {:.0} s are the least: play for longer",
+                *presses as f64 * WINDOW_S,
+                PRESSES_MIN as f64 * WINDOW_S
             ),
             Self::Untold(name) => write!(
                 f,

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use rustix::fs::{Access, access};
 
-use super::check::Check;
+use super::bridge::RunningBridge;
+use super::check::{Check, Finding};
 use crate::cli::playing::live::devices::{ListedDevice, input_devices};
 use crate::cli::printing::written::{printable, quoted};
 use tactpad::bridge::sink::uinput;
@@ -107,16 +108,39 @@ fn check_port(path: &str) -> Check {
     Check::bad("pad", message, format!("sudo setfacl -m u:$USER:rw {}", quoted(path)))
 }
 
-pub(super) fn check_pads(pads: &[FoundPad]) -> Vec<Check> {
+/// Virtual devices, which a bridge that plays into something else does without.
+pub(super) fn check_needed_uinput(running: Option<&RunningBridge>) -> Check {
+    let check = check_uinput();
+    match running.filter(|bridge| bridge.nodes().is_empty() && check.finding == Finding::Bad) {
+        Some(bridge) => {
+            check.noted(&format!("the bridge that runs does without: it plays into {}", bridge.output))
+        }
+        None => check,
+    }
+}
+
+pub(super) fn check_pads(pads: &[FoundPad], running: Option<&RunningBridge>) -> Vec<Check> {
     if pads.is_empty() {
-        let mend = Some("tactpad demo".into());
-        return vec![Check {
-            mend,
-            ..Check::note("pad", "no pad is attached; this command plays without one")
-        }];
+        return vec![check_missing_pad(running)];
     }
     let of_pad = |pad: &FoundPad| [Some(check_pad(pad)), check_firmware(pad)];
     pads.iter().flat_map(of_pad).flatten().collect()
+}
+
+fn check_missing_pad(running: Option<&RunningBridge>) -> Check {
+    let name = "pad";
+    match running {
+        Some(bridge) if bridge.waits() => Check::bad(
+            name,
+            "none is attached: plug it in; if it is, try another cable and another socket; this command lists what is there",
+            "tactpad devices",
+        ),
+        Some(_) => Check::good(name, "none of our own is attached; the bridge plays with something else"),
+        None => Check {
+            mend: Some("tactpad demo".into()),
+            ..Check::note(name, "no pad is attached; this command plays without one")
+        },
+    }
 }
 
 fn check_pad(pad: &FoundPad) -> Check {
@@ -187,7 +211,6 @@ mod tests {
     use tactpad::bridge::transport::evdev::battery::Battery;
     use tactpad::bridge::transport::firmware::Firmware;
 
-    use super::super::check::Finding;
     use super::*;
 
     #[test]
@@ -230,6 +253,24 @@ mod tests {
         };
         assert_eq!(found(Battery::Volts(5.2))[1], ("battery", Finding::Good));
         assert_eq!(found(Battery::Percent(9))[1], ("battery", Finding::Note));
+    }
+
+    #[test]
+    fn a_missing_pad_stands_in_the_way_of_a_bridge_that_waits_for_one() {
+        let found =
+            |status: Option<&str>| check_pads(&[], status.map(RunningBridge::of).as_ref()).remove(0).finding;
+        assert_eq!(found(None), Finding::Note);
+        assert_eq!(found(Some(r#"{"state":"waiting"}"#)), Finding::Bad);
+        assert_eq!(found(Some(r#"{"state":"playing"}"#)), Finding::Good);
+    }
+
+    #[test]
+    fn a_bridge_that_plays_into_a_log_needs_no_virtual_device() {
+        let found =
+            |status: Option<&str>| check_needed_uinput(status.map(RunningBridge::of).as_ref()).finding;
+        let unneeded = if check_uinput().finding == Finding::Bad { Finding::Note } else { Finding::Good };
+        assert_eq!(found(Some(r#"{"output":"event log in events"}"#)), unneeded);
+        assert_eq!(found(None), check_uinput().finding);
     }
 
     #[test]

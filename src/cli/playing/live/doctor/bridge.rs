@@ -2,19 +2,38 @@
 
 use std::io;
 
+use serde::Deserialize;
 use serde_json::Value;
 
 use super::check::Check;
 use crate::cli::playing::live::ctl;
 use crate::cli::playing::live::runtime::BridgeName;
 use tactpad::bridge::sink::x11::LeftDown;
+use tactpad::bridge::state::State;
 
-/// The nodes of a bridge's devices, as `event7`, by its status.
-pub(super) fn own_nodes(status: &str) -> Vec<String> {
-    let status: Value = serde_json::from_str(status).unwrap_or_default();
-    let output = status.get("output").and_then(Value::as_str).unwrap_or_default();
-    let words = output.split([' ', ',']);
-    words.filter_map(|word| word.strip_prefix("/dev/input/")).map(str::to_owned).collect()
+/// What a running bridge says of itself, as far as other checks depend on it.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct RunningBridge {
+    state: String,
+    pub(super) output: String,
+}
+
+impl RunningBridge {
+    pub(super) fn of(status: &str) -> Self {
+        serde_json::from_str(status).unwrap_or_default()
+    }
+
+    /// Whether it plays as soon as a pad comes.
+    pub(super) fn waits(&self) -> bool {
+        self.state == State::Waiting.word()
+    }
+
+    /// The nodes of its devices, as `event7`.
+    pub(super) fn nodes(&self) -> Vec<String> {
+        let words = self.output.split([' ', ',']);
+        words.filter_map(|word| word.strip_prefix("/dev/input/")).map(str::to_owned).collect()
+    }
 }
 
 pub(super) fn check_bridge(answer: &io::Result<String>, name: Option<&BridgeName>) -> Check {

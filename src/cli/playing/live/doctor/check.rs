@@ -36,4 +36,9 @@ impl Check {
     pub(super) fn bad(name: &'static str, message: impl Into<String>, mend: impl Into<String>) -> Self {
         Self { name, finding: Finding::Bad, message: message.into(), mend: Some(mend.into()) }
     }
+
+    /// The same where it stands in nobody's way, and why.
+    pub(super) fn noted(self, why: &str) -> Self {
+        Self { finding: Finding::Note, message: format!("{}; {why}", self.message), ..self }
+    }
 }

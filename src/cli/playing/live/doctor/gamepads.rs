@@ -85,7 +85,7 @@ pub(super) fn check_joydev(root: &Path) -> Check {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bridge::own_nodes;
+    use super::super::bridge::RunningBridge;
     use super::*;
 
     #[test]
@@ -105,9 +105,10 @@ mod tests {
                  S: Sysfs=/devices/virtual/input/input9\nH: Handlers={node} js0 \n\n"
             )
         };
-        let own = own_nodes(
+        let own = RunningBridge::of(
             r#"{"output":"virtual gamepad at /dev/input/event7, virtual pointer at /dev/input/event8"}"#,
-        );
+        )
+        .nodes();
         assert_eq!(own, ["event7", "event8"]);
         assert_eq!(check_other_gamepads(&device("event7"), &own).len(), 0);
         assert_eq!(check_other_gamepads(&device("event70"), &own).len(), 1);

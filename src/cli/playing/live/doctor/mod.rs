@@ -17,6 +17,7 @@ use std::path::Path;
 use clap::Args;
 use serde::Serialize;
 
+use self::bridge::RunningBridge;
 use self::check::{Check, Finding};
 use super::devices::input_devices;
 use super::runtime::BridgeName;
@@ -62,14 +63,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 pub(super) fn examine(name: Option<&BridgeName>) -> DoctorReport {
     let root = Path::new("/");
     let variable = |name: &str| env::var(name).ok();
-    let mut checks = vec![check_setup(), access::check_uinput(), access::check_rules(root)];
-    checks.extend(access::check_pads(&pads::attached()));
-    checks.extend(access::check_input_devices(&input_devices()));
     let bridge = match ctl::reached(name) {
         Ok(path) => ask(&path, "status"),
         Err(failure) => Err(io::Error::new(io::ErrorKind::PermissionDenied, failure.sentence())),
     };
-    let own = bridge.as_deref().map(bridge::own_nodes).unwrap_or_default();
+    let running = bridge.as_deref().ok().map(|status| RunningBridge::of(status));
+    let own = running.as_ref().map(RunningBridge::nodes).unwrap_or_default();
+    let mut checks =
+        vec![check_setup(), access::check_needed_uinput(running.as_ref()), access::check_rules(root)];
+    checks.extend(access::check_pads(&pads::attached(), running.as_ref()));
+    checks.extend(access::check_input_devices(&input_devices()));
     checks.extend(serial_ports::check_modems(root));
     checks.extend(serial_ports::check_braille(root));
     let devices = fs::read_to_string(root.join("proc/bus/input/devices")).unwrap_or_default();

@@ -10,7 +10,7 @@ mod steps;
 mod worker;
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, Weak};
+use std::sync::{Arc, Mutex};
 
 use self::pause::Pause;
 use self::session_state::SharedSessionState;
@@ -32,8 +32,8 @@ pub(super) struct AtHome {
     stage: Stage,
     /// Held by the session that writes; one that was stopped may still be at it.
     files: Arc<Mutex<()>>,
-    /// The pause of the newest session, as long as it lasts.
-    pause: Weak<Pause>,
+    /// Held by sessions as long as they listen.
+    pause: Option<Arc<Pause>>,
 }
 
 impl PageGuide for AtHome {
@@ -126,11 +126,7 @@ impl PageGuide for AtHome {
 impl AtHome {
     fn begin(&mut self, weight_g: Option<f64>, context: &GuideContext<'_>) -> Result<(), String> {
         let Stage::Choosing(choice) = &self.stage else { return Err(NO_ACTION.into()) };
-        let pause = match self.pause.upgrade() {
-            Some(pause) => pause,
-            None => Arc::new(Pause::begin(context.sender, context.status.state == State::Paused)?),
-        };
-        self.pause = Arc::downgrade(&pause);
+        let pause = self.pause.get_or_insert_with(|| Pause::new(context.sender)).hold()?;
         let (shared, stop) = (Arc::<SharedSessionState>::default(), Arc::<AtomicBool>::default());
         let work = Worker {
             name: choice.name.clone(),
@@ -296,6 +292,8 @@ mod tests {
         sender: Arc<RequestSender>,
         call_subscribers: Mutex<CallSubscribers>,
         host: Arc<dyn DashboardHost>,
+        state: State,
+        /// What a page was told last.
         status: Status,
         pad: ConnectedPad,
     }
@@ -306,7 +304,15 @@ mod tests {
             let sender = Arc::new(requests.sender().unwrap());
             let status = Status { state, ..status() };
             let pad = ConnectedPad { is_heard: state != State::Waiting, identity: None };
-            Self { requests, sender, call_subscribers: Mutex::default(), host: Arc::new(Shelf), status, pad }
+            Self {
+                requests,
+                sender,
+                call_subscribers: Mutex::default(),
+                host: Arc::new(Shelf),
+                state,
+                status,
+                pad,
+            }
         }
 
         fn with<T>(&self, work: impl FnOnce(&GuideContext<'_>) -> T) -> T {
@@ -324,11 +330,19 @@ mod tests {
             })
         }
 
-        /// Waits for the next request.
+        /// Waits for the next request that is no question.
         fn asked(&mut self) -> Request {
-            let mut fds = [PollFd::from_borrowed_fd(self.requests.fd(), PollFlags::IN)];
-            poll(&mut fds, None).unwrap();
-            self.requests.take().unwrap().request
+            loop {
+                if let Some(pending) = self.requests.take() {
+                    if pending.request != Request::Status {
+                        return pending.request;
+                    }
+                    pending.reply(format!(r#"{{"state":"{}"}}"#, self.state.word()));
+                    continue;
+                }
+                let mut fds = [PollFd::from_borrowed_fd(self.requests.fd(), PollFlags::IN)];
+                poll(&mut fds, None).unwrap();
+            }
         }
     }
 
@@ -405,13 +419,27 @@ mod tests {
     }
 
     #[test]
+    fn a_session_that_begins_before_a_page_knows_that_the_last_one_has_ended_pauses_for_itself() {
+        let (mut bridge, mut guide) = (Bridge::new(State::Playing), AtHome::default());
+        begin(&mut guide, &bridge);
+        assert_eq!(bridge.asked(), Request::Pause);
+        bridge.with(|context| guide.stop(context));
+        assert_eq!(bridge.asked(), Request::Resume);
+        // The page still has the status from before.
+        bridge.status.state = State::Paused;
+        begin(&mut guide, &bridge);
+        assert_eq!(bridge.asked(), Request::Pause);
+        bridge.with(|context| guide.stop(context));
+        assert_eq!(bridge.asked(), Request::Resume);
+    }
+
+    #[test]
     fn who_had_paused_before_goes_on_by_himself() {
         let (mut bridge, mut guide) = (Bridge::new(State::Paused), AtHome::default());
         begin(&mut guide, &bridge);
         assert_eq!(bridge.asked(), Request::Pause);
-        let pause = guide.pause.clone();
         bridge.with(|context| guide.stop(context));
-        while pause.strong_count() > 0 {
+        while Arc::strong_count(guide.pause.as_ref().unwrap()) > 1 {
             std::thread::yield_now();
         }
         assert!(bridge.requests.take().is_none());

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use firmware_proto::identity::Identity;
 
-use super::pause::Pause;
+use super::pause::PauseHold;
 use super::session::{Session, guide};
 use super::session_state::{SessionState, SharedSessionState};
 use crate::dashboard::call_subscribers::TimedCall;
@@ -53,7 +53,7 @@ impl Worker {
     ///
     /// # Errors
     /// The system has no thread to give.
-    pub(super) fn start(self, pause: Arc<Pause>, calls: Receiver<TimedCall>) -> Result<(), String> {
+    pub(super) fn start(self, pause: PauseHold, calls: Receiver<TimedCall>) -> Result<(), String> {
         let spawned = thread::Builder::new().name("calibration".into()).spawn(move || {
             match self.work(pause, calls) {
                 Ok(Some(outcome)) => self.shared.set(SessionState::Finished(Ok(outcome))),
@@ -66,7 +66,7 @@ impl Worker {
     }
 
     /// `None` where it was stopped.
-    fn work(&self, pause: Arc<Pause>, calls: Receiver<TimedCall>) -> Result<Option<GuideResult>, String> {
+    fn work(&self, pause: PauseHold, calls: Receiver<TimedCall>) -> Result<Option<GuideResult>, String> {
         let heard = self.listen(&pause, &calls);
         drop((pause, calls));
         let Some(guide) = heard? else { return Ok(None) };
@@ -83,7 +83,7 @@ impl Worker {
     }
 
     /// Listens until nothing is left to do. `None` where it was stopped before.
-    fn listen(&self, pause: &Pause, calls: &Receiver<TimedCall>) -> Result<Option<Guide>, String> {
+    fn listen(&self, pause: &PauseHold, calls: &Receiver<TimedCall>) -> Result<Option<Guide>, String> {
         let _files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
         let (mut guide, head) = guide(self.weight_g)?;
         let kept = self.host.open_session(&self.name, self.is_fresh, &mut guide, &head)?;
@@ -101,7 +101,7 @@ impl Worker {
     fn hear(
         &self,
         session: &mut Session,
-        pause: &Pause,
+        pause: &PauseHold,
         calls: &Receiver<TimedCall>,
     ) -> Result<bool, String> {
         while !session.is_done() {
@@ -120,7 +120,7 @@ impl Worker {
     fn take(
         &self,
         session: &mut Session,
-        pause: &Pause,
+        pause: &PauseHold,
         at: HostInstant,
         call: &OwnedCall,
     ) -> Result<(), String> {

@@ -16,9 +16,12 @@ export class Live {
   #clock = new HostClock();
   #silentPings = 0;
   #heard = false;
+  /** Why there is no answer: "lost" or "stalled". */
+  #gone = "lost";
   ages = new FrameAges();
 
-  /** Calls `listener` with each message of this kind; "open", "lost", "shut" (it is there, and lets no page in) and "moved" are told, too. */
+  /** Calls `listener` with each message of this kind; "open", "lost" (its end is closed), "stalled" (no answer), "shut" (it is there, and lets no page in) and
+   * "moved" are told, too. */
   on(kind, listener) {
     this.#listeners.set(kind, [...(this.#listeners.get(kind) ?? []), listener]);
   }
@@ -39,7 +42,7 @@ export class Live {
     this.#silentPings = 0;
     socket.addEventListener("open", () => this.#opened(socket));
     socket.addEventListener("message", (event) => socket === this.#socket && this.#take(JSON.parse(event.data)));
-    socket.addEventListener("close", () => this.#lost(socket));
+    socket.addEventListener("close", () => this.#lost(socket, this.#heard ? "lost" : "shut"));
   }
 
   #opened(socket) {
@@ -51,11 +54,12 @@ export class Live {
   }
 
   /** Nothing is asked any more before the program has proven itself. */
-  #lost(socket) {
+  #lost(socket, how) {
     if (socket !== this.#socket) return;
     this.#socket = null;
+    this.#gone = how === "stalled" ? how : "lost";
     setConnected(false);
-    this.#tell(this.#heard ? "lost" : "shut", null);
+    this.#tell(how, null);
     setTimeout(() => this.#seek(), AGAIN_MS);
   }
 
@@ -63,7 +67,7 @@ export class Live {
   async #seek() {
     const answer = await handshake({ isFresh: false });
     if (answer === null) {
-      this.#tell("lost", null);
+      this.#tell(this.#gone, null);
       setTimeout(() => this.#seek(), AGAIN_MS);
     } else if (answer.origin !== location.origin) {
       this.#tell("moved", answer.origin);
@@ -81,7 +85,7 @@ export class Live {
       const silent = this.#socket;
       // A program that stands still does not close its end.
       silent.close();
-      this.#lost(silent);
+      this.#lost(silent, "stalled");
     } else this.#ping();
   }
 

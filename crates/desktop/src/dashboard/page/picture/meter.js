@@ -133,7 +133,8 @@ export class Forces {
     this.makeMark = makeMark;
     this.has_shear = true;
     this.meters = FORCES.map((force) => new Meter(force));
-    this.node = el("div", { class: "meters" }, ...this.meters.map((meter) => meter.node));
+    this.node = el("div", { class: "meters" }, ...this.meters.map((meter) => meter.node),
+      el("p", { class: "quiet small", text: "N is newton: 100 g that lie on the pad press with about 1 N." }));
   }
 
   /** Leaves out the forces that the pad does not measure, unless the profile asks for them. */

@@ -57,11 +57,12 @@ export class ProfileView {
     this.redo = button("Redo", () => this.draft.move(1), { id: "redo", class: "main", "aria-keyshortcuts": "Control+Y" });
     this.save = button("Save", () => this.#save(), { id: "save", class: "main primary", "aria-keyshortcuts": "Control+S" });
     this.revert = button("Revert", () => this.draft.replace(this.draft.saved), { id: "revert", class: "main" });
+    this.saves = button("Earlier saves", () => this.profileHistory?.reveal(), { id: "saves", class: "main" });
     this.live = el("input", { type: "checkbox", id: "preview", checked: true, onchange: () => this.#allowPreview(this.live.checked) });
     this.state = el("span", { id: "draft-state" });
     this.message = el("p", { class: "editor-message", role: "status" });
     this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
-      el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert,
+      el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert, this.saves,
       button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), button("Print …", () => this.#print(), { id: "print", class: "main" }), el("label", { class: "check main" }, this.live, "Play changes at once"), this.state, this.message));
   }
 

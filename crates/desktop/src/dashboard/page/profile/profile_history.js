@@ -35,6 +35,7 @@ export class ProfileHistory {
     this.message = el("p", { class: "editor-message", role: "status" });
     this.undo = el("p", {});
     this.history = el("ol", { class: "history" });
+    this.saves = el("h4", { tabindex: "-1", text: "What was saved, and when" });
     this.rename = button("Rename …", () => this.#rename(), { id: "rename", class: "main" });
     this.remove = button("Delete", () => this.#delete(), { id: "delete", class: "main" });
     this.decoder = el("select", { id: "export-decoder", class: "main", onchange: () => this.#showExport() });
@@ -42,11 +43,17 @@ export class ProfileHistory {
     this.export = el("a", { class: "action", id: "export", download: "", text: "Export to a file", onclick: () => this.#exported() });
     this.file = el("input", { type: "file", id: "import", hidden: true, accept: ".tactpad,application/json", onchange: () => this.#import() });
     this.node = el("div", { class: "card" }, el("h3", { text: "History and files" }), this.message, this.undo,
-      el("h4", { text: "What was saved, and when" }), this.history,
+      this.saves, this.history,
       el("h4", { text: "To another machine, and back" }),
       el("div", { class: "commands" }, this.export, this.decoderLabel, button("Import from a file …", () => this.file.click(), { id: "choose-import", class: "main" }), this.file),
       el("h4", { text: "This profile" }),
       el("div", { class: "commands" }, button("Duplicate …", () => this.#duplicate(), { id: "duplicate", class: "main" }), this.rename, this.remove));
+  }
+
+  /** Goes to the list of saves. */
+  reveal() {
+    this.saves.scrollIntoView();
+    this.saves.focus();
   }
 
   /** Shows the history of the profile that is open. */
@@ -61,7 +68,7 @@ export class ProfileHistory {
     const rows = saves.map((save, index) => {
       const path = `/history/${save.id}`;
       const before = index + 1 < saves.length ? `/history/${saves[index + 1].id}` : "/history/shipped";
-      return this.#row(moment(save.at_ms), changesOf(save, own), path, own && save.changes.length > 0 ? before : null);
+      return this.#row(moment(save.at_ms), changesOf(save), path, own && save.changes.length > 0 ? before : null);
     });
     if (shipped && own) rows.push(this.#row("as shipped", "the profile inside the program", "/history/shipped", null));
     this.history.replaceChildren(...(rows.length === 0 ? [el("li", { class: "quiet", text: "None yet: the first save begins them." })] : rows));
@@ -178,10 +185,9 @@ export class ProfileHistory {
   }
 }
 
-/** What a save changed; the newest of a profile that is there is what stands in it. */
-function changesOf({ number, changes }, own) {
-  const words = changes.length === 0 ? "the oldest that is kept" : changes.join("; ");
-  return number === 1 && own ? `as it is now: ${words}` : words;
+/** What a save changed. */
+function changesOf({ changes }) {
+  return changes.length === 0 ? "the oldest that is kept" : changes.join("; ");
 }
 
 /** The name in an exported file. */

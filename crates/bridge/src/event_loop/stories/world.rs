@@ -314,8 +314,11 @@ impl World {
 
     /// After the largest number comes zero, both are read, and it is found before anything comes of it.
     fn is_wrap_found(&mut self, zero: &Sample) -> Result<(), Broken> {
-        let [.., largest, read] = self.read.make_contiguous() else { return Ok(()) };
-        let is_largest = largest.sequence == u32::MAX >> (32 - self.sequence_bits);
+        let [before @ .., largest, read] = self.read.make_contiguous() else { return Ok(()) };
+        // A number that has fewer bits from now on falls to what seem to be old frames, until some of them go on from each other.
+        let newest = &before[before.len().saturating_sub(RESTART_FRAMES as usize)..];
+        let goes_on = newest.iter().chain([&*largest]).is_sorted_by_key(|sample| sample.sequence);
+        let is_largest = goes_on && largest.sequence == u32::MAX >> (32 - self.sequence_bits);
         let is_sound = zero.sequence == 0 && zero.time_us > largest.time_us && !zero.status.restarted();
         // A first frame of another time may have begun a run in between; and by a clock that runs away no two frames go on from each other.
         let is_in_doubt = [Cause::Loss, Cause::Clock]

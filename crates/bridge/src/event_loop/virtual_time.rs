@@ -340,13 +340,16 @@ impl Play {
         }
     }
 
-    /// Puts bytes on the line, as many as a terminal holds whole.
-    pub(super) fn buffer(&mut self, bytes: &[u8]) {
-        self.plug.unread(|unread| {
-            if unread.len() + bytes.len() <= TERMINAL_BYTES {
+    /// Puts bytes on the line, and says whether a terminal holds that many.
+    pub(super) fn buffer(&mut self, bytes: &[u8]) -> bool {
+        let put = self.plug.unread(|unread| {
+            let fits = unread.len() + bytes.len() <= TERMINAL_BYTES;
+            if fits {
                 unread.extend_from_slice(bytes);
             }
+            fits
         });
+        put.unwrap_or(false)
     }
 
     /// Whether the bridge has a pad open that has sent something.

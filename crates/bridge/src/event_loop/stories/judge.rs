@@ -80,6 +80,8 @@ pub(super) struct Judge {
     kept_since: Option<HostInstant>,
     /// When channels recovered again of which there was no zero.
     recovered: Option<HostInstant>,
+    /// When a channel was off last, or was hidden by a finger since.
+    seemed_off: Option<HostInstant>,
     /// A press that has to count by then.
     promise: Option<HostInstant>,
     /// The number after which a smaller one came, and when the pad had not counted past it.
@@ -128,6 +130,10 @@ impl Judge {
     /// What waited for so long comes now, and with it whatever was there then.
     pub(super) fn delay_is_over(&mut self, now: HostInstant, waited_us: u64) {
         self.causes.note_again(now, waited_us + NAMED_US);
+        self.wrapped = self.wrapped.map(|(number, at)| {
+            let is_recent = now.us_since(at) <= waited_us + TAKEN_BACK_US;
+            (number, if is_recent { now } else { at })
+        });
     }
 
     /// Takes what went out by now, and what was told.
@@ -153,7 +159,11 @@ impl Judge {
 
     /// Whether no finger was heard for so long that nothing comes of it any more.
     pub(super) fn is_untouched(&self, now: HostInstant) -> bool {
-        self.touch_heard.is_none_or(|at| now.us_since(at) > GHOST_US)
+        self.is_untouched_for(now, GHOST_US)
+    }
+
+    fn is_untouched_for(&self, now: HostInstant, us: u64) -> bool {
+        self.touch_heard.is_none_or(|at| now.us_since(at) > us)
     }
 
     /// All channels that were off answer again, and the zero was measured without them: it is measured anew.
@@ -162,19 +172,35 @@ impl Judge {
     }
 
     fn may_go_down(&self, play: &Play, code: &Code) -> Result<(), Broken> {
-        let now = play.now;
-        let is_off = self.causes.within(now, FAR_US).any(|cause| cause == Channel);
-        let may_be_channel = is_off && self.causes.last(Channel) > self.recovered;
-        if self.is_untouched(now) && !may_be_channel {
+        if self.is_untouched(play.now) && !self.may_look_like_a_finger(play.now) {
             return broken("nothing goes down without a finger", code);
         }
         Ok(())
+    }
+
+    /// Whether a channel is off, or was, and may look like a finger still.
+    fn may_look_like_a_finger(&self, now: HostInstant) -> bool {
+        let was_off = self.seemed_off.is_some_and(|at| now.us_since(at) <= FAR_US);
+        was_off && self.causes.last(Channel) > self.recovered
+    }
+
+    /// Whether it is off now, or was and a finger hides it.
+    fn seems_off(&self, now: HostInstant) -> bool {
+        let is_off = (0..CHANNEL_NAMES.len()).any(|channel| self.causes.was_off(now, 0, channel));
+        is_off || self.may_look_like_a_finger(now) && !self.is_untouched_for(now, COUNTS_US)
     }
 
     /// Looks at the bridge, which comes to run.
     pub(super) fn look(&mut self, play: &Play) -> Result<(), Broken> {
         let (now, pipeline) = (play.now, &play.bridge.driver.pipeline);
         let is_held = pipeline.held().next().is_some();
+        if self.seems_off(now) {
+            self.seemed_off = Some(now);
+        }
+        let is_ghost = pipeline.contact().is_some() && self.is_untouched_for(now, COUNTS_US);
+        if is_ghost && self.may_look_like_a_finger(now) {
+            self.causes.note(now, Channel);
+        }
         let silent_us = self.heard.map_or(u64::MAX, |heard| now.us_since(heard));
         if is_held && silent_us > RELEASED_US {
             return broken("silence releases everything within 100 ms", format!("{silent_us} µs"));

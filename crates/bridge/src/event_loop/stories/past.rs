@@ -5,7 +5,7 @@ use super::event::Event::{
     PlugIn, PullOut, Rate, Repeat, Restart, Sleep, Stall, Touch,
 };
 use super::event::Off::{Drift, Rail, Saturated, Stuck};
-use super::event::{Event, RIGHT, Step, Wish};
+use super::event::{Event, PortState, RIGHT, Step, Wish};
 use super::play;
 use tactpad_core::quantity::Contact;
 
@@ -443,8 +443,46 @@ fn a_number_that_falls_to_the_largest_is_an_old_frame() {
     let begun = [(0, Rate(100)), (0, Mend), (0, anew), (9, Ask(Wish::Break)), (169, Event::Identify(2))];
     let looked = [(113, Event::PageStall(false)), (13, Ask(Wish::Status)), (2_572, Lift)];
     let touched =
-        [(352, Event::ReaderStall(true)), (60, Touch(RIGHT)), (854, Lift), (905, Event::ClockJump(0))];
+        [(352, Event::ReaderStall(true)), (60, Touch(RIGHT)), (854, Lift), (905, ClockJump(0))];
     let again =
         [(2_238, Stall(false)), (365, Touch(finger)), (10, Event::SequenceBits(8)), (62, Touch(RIGHT))];
     holds(&[&begun[..], &looked, &touched, &again].concat());
+}
+
+#[test]
+fn a_channel_that_drifted_under_a_finger_may_look_like_another_one() {
+    let drift = |channel, uv_per_s| OffToo(channel, Drift { uv_per_s });
+    let begun =
+        [(0, PLUG_IN), (0, Off(3, Drift { uv_per_s: -142 })), (1_000, drift(0, 334)), (231, Event::Cure)];
+    let hidden = [(0, Mend), (0, drift(5, 265)), (0, Touch(RIGHT)), (2_714, Event::Cure)];
+    holds(&[&begun[..], &hidden, &[(0, Lift), (0, Touch(RIGHT)), (1_000, Lift), (1, Mend)]].concat());
+}
+
+#[test]
+fn a_pad_that_is_changed_while_nobody_reads_leaves_nothing_in_the_old_port() {
+    let finger = Contact { x_mm: 14.8, y_mm: 9.7, fx_n: -0.3, fy_n: -1.5, fz_n: 2.4 };
+    let begun = [(0, Rate(100)), (0, PLUG_IN), (1, Freeze(3_000)), (0, Sleep { s: 1, is_powered: false })];
+    let away =
+        [(86, Touch(finger)), (0, Event::Port(PortState::Unusable)), (808, Keep(true)), (0, Keep(false))];
+    let again = [(0, Lift), (13_721, Ask(Wish::Tare)), (363, Ask(Wish::Pause)), (0, Mend)];
+    holds(&[&begun[..], &away, &again].concat());
+}
+
+#[test]
+fn a_clock_that_begins_again_at_zero_leaves_no_sample_late_for_ever() {
+    let finger = Contact { x_mm: -12.3, y_mm: 5.5, fx_n: 0.0, fy_n: 0.0, fz_n: 1.3 };
+    let begun = [(0, Rate(125)), (0, PlugIn { is_anew: false }), (0, ClockJump(18_446_744_073_709_305_899))];
+    let stood = [(10, Freeze(300)), (164, Rate(500)), (59, Lift)];
+    let touched = [(2_740, Touch(finger)), (348, Freeze(300)), (934, Touch(RIGHT))];
+    holds(&[&begun[..], &stood, &touched].concat());
+}
+
+#[test]
+fn what_a_full_terminal_did_not_take_was_not_read() {
+    let finger = Contact { x_mm: -12.8, y_mm: -6.4, fx_n: -0.7, fy_n: 0.4, fz_n: 0.8 };
+    let anew = |time_us, is_flagged, offset| Restart { time_us, is_flagged, offset, text: 2 };
+    let begun = [(0, Rate(200)), (0, Mend), (1, Touch(finger)), (0, Freeze(3_000)), (425, Touch(RIGHT))];
+    let first =
+        [(31, anew(4_294_780_715, false, 377_673)), (1_000, Touch(RIGHT)), (0, Event::SequenceBits(8))];
+    holds(&[&begun[..], &first, &[(2_306, anew(18_446_744_073_708_760_834, true, 322_901))]].concat());
 }

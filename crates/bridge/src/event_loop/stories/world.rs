@@ -97,6 +97,8 @@ pub(super) struct World {
     is_staying: bool,
     port: PortState,
     frozen_until: Option<HostInstant>,
+    /// The pad was pulled out meanwhile: the bridge still holds the port that has gone.
+    is_port_new: bool,
     /// It has not come to run for so long.
     frozen_us: u64,
     /// The loop has something to answer.
@@ -154,6 +156,7 @@ impl World {
             is_staying: false,
             port: PortState::Free,
             frozen_until: None,
+            is_port_new: false,
             frozen_us: 0,
             is_asked: false,
             read_at: Vec::new(),
@@ -344,18 +347,21 @@ impl World {
             return Ok(());
         }
         // Nobody keeps what a port says that is not open.
-        let is_open = self.play.bridge.connection.pad().is_some();
+        let is_frozen = self.frozen_until.is_some();
+        let is_open = self.is_open() && (!is_frozen || self.play.buffer(bytes));
         if let Some(sample) = sound.filter(|_| is_open) {
             self.hear(sample);
         }
-        if self.frozen_until.is_some() {
-            if is_open {
-                self.play.buffer(bytes);
-            }
+        if is_frozen {
             return Ok(());
         }
         self.play.send_to(bytes);
         self.read()
+    }
+
+    /// Whether the bridge has opened the port that the pad has now.
+    fn is_open(&self) -> bool {
+        self.play.bridge.connection.pad().is_some() && !self.is_port_new
     }
 
     /// The bridge reads this sound sample now, or as soon as it comes to run.
@@ -411,6 +417,7 @@ impl World {
         self.judge.thaw(self.play.now, self.frozen_us);
         self.frozen_us = 0;
         self.read()?;
+        self.is_port_new = false;
         self.play.turn(ASLEEP);
         self.judge.take(&self.play)
     }

@@ -76,7 +76,7 @@ impl Run {
     /// By how much `next`, heard at `now`, comes later than a sample that came without delay.
     pub(super) fn delay_us(&self, now: HostInstant, next: &Reading) -> u64 {
         let (heard, time_us) = self.prompt;
-        now.us_since(heard).saturating_sub(next.time_us.saturating_sub(time_us))
+        now.us_since(heard).saturating_sub(shown_us(time_us, next).unwrap_or(0))
     }
 
     /// The step to `next`, heard at `now`.
@@ -150,12 +150,18 @@ impl Run {
         let passed_us = now.us_since(heard);
         let off_us = passed_us / PACE_OFF + GAP_MAX_US;
         let is_in_time =
-            next.time_us.checked_sub(time_us).is_some_and(|shown_us| shown_us.abs_diff(passed_us) <= off_us);
+            shown_us(time_us, next).is_some_and(|shown_us| shown_us.abs_diff(passed_us) <= off_us);
         let ahead = next.sequence.wrapping_sub(self.last.sequence);
-        let missing_us = next.time_us.checked_sub(self.last.time_us);
+        let missing_us = shown_us(self.last.time_us, next);
         is_in_time
             && missing_us.is_some_and(|us| u64::from(ahead) <= (us / PERIOD_MIN_US).max(SKIPPED_MAX.into()))
     }
+}
+
+/// How much later than `time_us` the pad's clock shows at `next`, which may have begun again at zero; `None` if it is earlier.
+fn shown_us(time_us: u64, next: &Reading) -> Option<u64> {
+    let shown_us = next.time_us.wrapping_sub(time_us);
+    (shown_us <= u64::MAX / 2).then_some(shown_us)
 }
 
 /// Whether `next` is one of the next samples after `last`, by number and by the pad's clock.

@@ -67,7 +67,7 @@ pub(super) fn examine(name: Option<&BridgeName>) -> DoctorReport {
         Ok(path) => ask(&path, "status"),
         Err(failure) => Err(io::Error::new(io::ErrorKind::PermissionDenied, failure.sentence())),
     };
-    let running = bridge.as_deref().ok().map(|status| RunningBridge::of(status));
+    let running = bridge.as_deref().ok().map(RunningBridge::of);
     let own = running.as_ref().map(RunningBridge::nodes).unwrap_or_default();
     let mut checks =
         vec![check_setup(), access::check_needed_uinput(running.as_ref()), access::check_rules(root)];

@@ -23,6 +23,8 @@ impl World {
                 self.kept = self.kept.take().map(|_| Vec::new());
                 if self.frozen_until.is_none() {
                     self.read()?;
+                } else {
+                    self.is_port_new = true;
                 }
             }
             Event::Port(state) => {
@@ -34,6 +36,10 @@ impl World {
                 };
             }
             Event::Restart { time_us, is_flagged, offset, text } => {
+                if !self.judge.causes.has_passed(play.now, Cause::Restarted) {
+                    // Again and again its clock is set anew.
+                    self.judge.causes.note(play.now, Cause::Clock);
+                }
                 self.judge.causes.note(play.now, Cause::Restarted);
                 (play.sequence, play.offset) = (0, [offset; 9]);
                 if self.unconfirmed_restart_frames == 0 {
@@ -206,12 +212,12 @@ impl World {
         self.judge.delay_is_over(self.play.now, self.play.now.us_since(self.kept_from));
         self.judge.causes.note(self.play.now, Cause::Delayed);
         if self.frozen_until.is_some() {
-            if self.play.bridge.connection.pad().is_some() {
-                kept.chunks(64).for_each(|bytes| self.play.buffer(bytes));
+            if self.is_open() {
+                kept.chunks(64).all(|bytes| self.play.buffer(bytes));
             }
             return Ok(());
         }
-        if self.play.bridge.connection.pad().is_some() {
+        if self.is_open() {
             // A finger may have been there meanwhile.
             self.judge.hear(self.play.now, true);
         }

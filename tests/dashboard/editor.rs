@@ -221,22 +221,27 @@ fn bind_on_the_plate(finger: &Finger, shown: &Shown, browser: &Browser) {
     };
     let press = |x_mm: f32, y_mm: f32, fz_n: f32| {
         browser.click("#bind");
-        says("Press on the pad");
+        says("First the place");
         finger.press(x_mm, y_mm, fz_n);
         assert!(comes_true(|| shown.status()["held"].as_array().is_some_and(|held| !held.is_empty())));
         finger.lift();
     };
+    // A finger on the pad may be anybody's: nothing listens before the page was told.
     press(15.0, 0.0, 1.0);
+    says("The pad was pressed there.");
+    browser.click_button(".binding", "right");
     says("right: press its key");
     bind("j", "right = \"KEY_J\"");
     says("right is J on the keyboard now. This profile plays the gamepad");
     // Where the whole press does something, that is meant.
     press(0.0, 15.0, 3.0);
+    says("The pad was pressed there.");
+    browser.click_button(".binding", "A: hop");
     says("A: hop: press its key");
     bind("k", "keyboard = \"KEY_K\", label = \"hop\"");
     // In the picture all that counts there may be meant.
     browser.click("#bind");
-    says("Press on the pad");
+    says("First the place");
     browser.run("const plate = document.querySelector('#profile .plate'); const box = plate.getBoundingClientRect(); \
          plate.dispatchEvent(new MouseEvent('click', { clientX: box.x + box.width / 2, clientY: box.y + box.height / 2, bubbles: true }))");
     says("Which one?");
@@ -249,6 +254,38 @@ fn bind_on_the_plate(finger: &Finger, shown: &Shown, browser: &Browser) {
     browser.keys(&[], &["\u{e00c}"]);
     says("Nothing was changed.");
     assert_eq!(text(browser), before);
+}
+
+#[test]
+fn a_dragged_word_turns_all_directions_and_the_bar_saves_drops_and_says_what_is_in_play() {
+    let finger = Finger::start();
+    let Some((shown, browser)) = editor(&finger) else { return };
+    let before = text(&browser);
+    let turned = |text: &str| read(text, OutputChoice::AsWritten).0.unwrap().dpad.unwrap().rotation_deg;
+    browser.drag("#profile [data-direction='2']", [-60, 20]);
+    let after = rested_text(&browser, &before);
+    assert!(turned(&after) > 10.0, "{after}");
+    browser.wait("document.getElementById('preview-notice').innerText.includes('not saved yet')");
+    assert_eq!(
+        browser.run("return [...document.querySelectorAll('#preview-notice button')].map((it) => it.textContent + it.className)"),
+        serde_json::json!(["Savemain primary", "Drop what I changedmain"])
+    );
+    browser.click_button("#preview-notice", "Drop what I changed");
+    assert!(comes_true(|| text(&browser) == before && shown.status()["preview"] == false));
+    browser.click("#undo");
+    assert!(comes_true(|| text(&browser) == after));
+    browser.click("#pause");
+    assert!(comes_true(|| shown.status()["state"] == "paused"));
+    browser.click_button("#preview-notice", "Save");
+    let says = |sentence: &str| {
+        browser.wait(&format!("document.querySelector('.editor-message').textContent === {sentence:?}"));
+    };
+    says("Saved. tactpad is paused: Go on plays it.");
+    browser.click("#pause");
+    says("Saved, and in play.");
+    browser.run("scrollTo(0, 1e6)");
+    browser.wait("document.getElementById('pause').getBoundingClientRect().top >= 0");
+    browser.wait("document.getElementById('announcer').textContent === ''");
 }
 
 #[test]

@@ -10,18 +10,18 @@ use crate::cli::files::destination::Destination;
 use crate::cli::printing::date::date;
 use crate::cli::printing::written::stdout;
 use tactpad::lab::play::sheet::Sheet;
-use tactpad::pipeline::mapping::plain::summary::{Part, Summary};
+use tactpad::pipeline::mapping::plain::summary::{Part, Reader, Summary};
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 
 /// Prints what a profile does, a line for each thing, in columns.
 pub(super) fn print(profile: &str) -> Result<(), Failure> {
-    let summary = Summary::of(chosen::read(profile, OutputChoice::AsWritten)?.profile());
+    let summary = Summary::of(chosen::read(profile, OutputChoice::AsWritten)?.profile(), Reader::Tuner);
     let width =
         |of: fn(&Part) -> &str| summary.does.iter().map(|part| of(part).chars().count()).max().unwrap_or(0);
     let [hands, given] = [width(|part| &part.hand), width(|part| &part.gives)];
     let mut out = stdout();
     writeln!(out, "{}, played on the {}\n", summary.name, summary.output)?;
-    for Part { hand, gives, numbers } in &summary.does {
+    for Part { hand, gives, numbers, .. } in &summary.does {
         writeln!(out, "{}", format!("{hand:hands$}   {gives:given$}   {numbers}").trim_end())?;
     }
     let settings = summary.hand.iter().map(|(word, _)| word.chars().count()).max().unwrap_or(0);

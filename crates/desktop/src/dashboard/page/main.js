@@ -2,7 +2,7 @@
 
 import { announce } from "./common/announce.js";
 import { setToken, takeToken } from "./link/api.js";
-import { say } from "./common/dom.js";
+import { measured, say } from "./common/dom.js";
 import { DraftStore, takeAsFragment } from "./profile/draft_store.js";
 import { LiveView } from "./live/live.js";
 import { fetchKeys, handshake } from "./link/handshake.js";
@@ -118,6 +118,7 @@ async function enter() {
 async function start() {
   takeToken();
   startSettings();
+  measured(document.querySelector(".top"), "--top-height");
   const views = makeViews();
   onShow("live", () => views.live.status.listProfiles());
   for (const view of ["profile", "guides", "reports", "doctor"]) onShow(view, () => views[view].show());

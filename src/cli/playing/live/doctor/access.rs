@@ -113,7 +113,9 @@ pub(super) fn check_needed_uinput(running: Option<&RunningBridge>) -> Check {
     let check = check_uinput();
     match running.filter(|bridge| bridge.nodes().is_empty() && check.finding == Finding::Bad) {
         Some(bridge) => {
-            check.noted(&format!("the bridge that runs does without: it plays into {}", bridge.output))
+            let output = &bridge.output;
+            let place = if output.starts_with("event log") { "an event log, and no game" } else { output };
+            check.noted(&format!("the bridge that runs does without: it plays into {place}"))
         }
         None => check,
     }

@@ -3,10 +3,13 @@
 use std::collections::BTreeSet;
 
 use tactpad::pipeline::control::OutputDevice;
-use tactpad::pipeline::mapping::plain::{controls, settings, values};
-use tactpad::pipeline::mapping::read;
+use tactpad::pipeline::mapping::plain::{controls, named, settings, values};
+use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::read::{self, check};
 use toml::{Table, Value};
 
+/// The table of helps for hands, which say by themselves what they do.
+const HELPS: &str = "access";
 /// More changes than this are counted.
 const TOLD_MAX: usize = 6;
 
@@ -17,9 +20,11 @@ pub(super) fn changes(before: &str, after: &str) -> Vec<String> {
         return vec!["the text, which could not be read".into()];
     };
     let mut told = Vec::new();
-    tables(&Place::default(), &old, &new, &mut told);
+    let profile = |text: &str| check::read(text, check::OutputChoice::AsWritten).0;
+    let profiles = Versions { old: profile(before), new: profile(after) };
+    tables(&Place::default(), &old, &new, &profiles, &mut told);
     if told.is_empty() {
-        told.push("comments or layout alone".into());
+        told.push("only comments".into());
     }
     let more = told.len().saturating_sub(TOLD_MAX);
     told.truncate(TOLD_MAX);
@@ -29,6 +34,12 @@ pub(super) fn changes(before: &str, after: &str) -> Vec<String> {
     told
 }
 
+/// Both texts as they are played, where they can be.
+struct Versions {
+    old: Option<Profile>,
+    new: Option<Profile>,
+}
+
 /// Where something stands in a profile.
 #[derive(Clone, Default)]
 struct Place {
@@ -36,18 +47,35 @@ struct Place {
     setting: String,
     /// The same for people: `button 1, press force`.
     words: String,
+    /// Which table of a list it is, from 0.
+    index: usize,
 }
 
 impl Place {
     fn key(&self, key: &str) -> Self {
         let (dot, comma) = if self.setting.is_empty() { ("", "") } else { (".", ", ") };
         let setting = format!("{}{dot}{key}", self.setting);
-        let words = format!("{}{comma}{}", self.words, settings::word(&setting));
-        Self { setting, words }
+        let word = settings::word(&setting);
+        let words =
+            if self.setting == HELPS { word.to_owned() } else { format!("{}{comma}{word}", self.words) };
+        Self { setting, words, index: 0 }
     }
 
-    fn number(&self, number: usize) -> Self {
-        Self { setting: self.setting.clone(), words: format!("{} {number}", self.words) }
+    fn number(&self, index: usize) -> Self {
+        Self { setting: self.setting.clone(), words: format!("{} {}", self.words, index + 1), index }
+    }
+
+    /// Whether it is a help for hands.
+    fn is_help(&self) -> bool {
+        self.setting.strip_prefix(HELPS).is_some_and(|rest| rest.starts_with('.'))
+    }
+
+    /// A whole table that stands here, for people: `button 2, Start: pause`.
+    fn table(&self, table: &Table, profile: Option<&Profile>) -> String {
+        let button = profile.filter(|_| self.setting == "button");
+        let name = button.and_then(|profile| named::button(profile, self.index));
+        let name = name.or_else(|| Some(table.get("name")?.as_str()?.to_owned()));
+        name.map_or_else(|| self.words.clone(), |name| format!("{}, {name},", self.words))
     }
 
     /// A text that stands here, for people.
@@ -63,21 +91,41 @@ impl Place {
     }
 }
 
-fn tables(place: &Place, old: &Table, new: &Table, told: &mut Vec<String>) {
+fn tables(place: &Place, old: &Table, new: &Table, profiles: &Versions, told: &mut Vec<String>) {
     let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
     for key in keys {
-        compare(&place.key(key), old.get(key), new.get(key), told);
+        compare(&place.key(key), old.get(key), new.get(key), profiles, told);
     }
 }
 
-fn compare(place: &Place, old: Option<&Value>, new: Option<&Value>, told: &mut Vec<String>) {
+fn compare(
+    place: &Place,
+    old: Option<&Value>,
+    new: Option<&Value>,
+    profiles: &Versions,
+    told: &mut Vec<String>,
+) {
     let words = &place.words;
     match (old, new) {
         (Some(old), Some(new)) if old == new => {}
-        (Some(Value::Table(old)), Some(Value::Table(new))) => tables(place, old, new, told),
-        (Some(Value::Array(old)), Some(Value::Array(new))) => lists(place, old, new, told),
-        (None, Some(Value::Array(new))) => lists(place, &[], new, told),
-        (Some(Value::Array(old)), None) => lists(place, old, &[], told),
+        (Some(Value::Table(old)), Some(Value::Table(new))) => tables(place, old, new, profiles, told),
+        (Some(Value::Array(old)), Some(Value::Array(new))) => lists(place, old, new, profiles, told),
+        (None, Some(Value::Array(new))) => lists(place, &[], new, profiles, told),
+        (Some(Value::Array(old)), None) => lists(place, old, &[], profiles, told),
+        (None, Some(Value::Table(new))) if place.setting == HELPS => {
+            tables(place, &Table::new(), new, profiles, told);
+        }
+        (Some(Value::Table(old)), None) if place.setting == HELPS => {
+            tables(place, old, &Table::new(), profiles, told);
+        }
+        (None, Some(Value::Table(new))) => {
+            told.push(format!("{} added", place.table(new, profiles.new.as_ref())));
+        }
+        (Some(Value::Table(old)), None) => {
+            told.push(format!("{} removed", place.table(old, profiles.old.as_ref())));
+        }
+        (None, Some(new)) if place.is_help() => told.push(format!("{words} {}", said(place, new))),
+        (Some(old), None) if place.is_help() => told.push(format!("{words} {}: no more", said(place, old))),
         (Some(old), Some(new)) => {
             told.push(format!("{words} from {} to {}", said(place, old), said(place, new)));
         }
@@ -88,7 +136,7 @@ fn compare(place: &Place, old: Option<&Value>, new: Option<&Value>, told: &mut V
 }
 
 /// Lists are compared from both ends, so that one that was removed in the middle is one change.
-fn lists(place: &Place, old: &[Value], new: &[Value], told: &mut Vec<String>) {
+fn lists(place: &Place, old: &[Value], new: &[Value], profiles: &Versions, told: &mut Vec<String>) {
     let same = |pair: &(&Value, &Value)| pair.0 == pair.1;
     let head = old.iter().zip(new).take_while(same).count();
     let shorter = old.len().min(new.len()) - head;
@@ -96,15 +144,12 @@ fn lists(place: &Place, old: &[Value], new: &[Value], told: &mut Vec<String>) {
     let old = old.get(head..old.len() - tail).unwrap_or_default();
     let new = new.get(head..new.len() - tail).unwrap_or_default();
     for index in 0..old.len().max(new.len()) {
-        compare(&place.number(head + index + 1), old.get(index), new.get(index), told);
+        compare(&place.number(head + index), old.get(index), new.get(index), profiles, told);
     }
 }
 
-/// " (2.5 N)"; nothing of what has parts.
+/// " (2.5 N)"
 fn of(place: &Place, value: &Value) -> String {
-    if matches!(value, Value::Table(_) | Value::Array(_)) {
-        return String::new();
-    }
     format!(" ({})", said(place, value))
 }
 
@@ -128,6 +173,9 @@ mod tests {
     const TEXT: &str = "min_press_ms = 40\n[dpad]\nmode = \"8way\"\n[[button]]\npress_n = 2.0\nout = { keyboard = \"KEY_Z\" }\n\
                         [[button]]\nforce = \"fy\"\npress_n = 1.2\n[[button]]\npress_n = 3.0\n";
 
+    const BUTTON: &str =
+        "[[button]]\nforce = \"fz\"\npress_n = 2\nout = { keyboard = \"KEY_Z\", gamepad = \"BTN_SOUTH\" }\n";
+
     #[test]
     fn each_change_is_a_phrase() {
         for (from, to, phrase) in [
@@ -137,13 +185,20 @@ mod tests {
             ("[dpad]", "left_handed = true\n[dpad]", "left-handed added (yes)"),
             ("8way", "4way", "directions, kind of directions from “eight directions” to “four directions”"),
             ("[[button]]\nforce = \"fy\"\npress_n = 1.2\n", "", "button 2 removed"),
-            ("[dpad]", "# a word\n[dpad]", "comments or layout alone"),
+            ("[dpad]", "# a word\n[dpad]", "only comments"),
             ("[dpad]", "[dpad", "the text, which could not be read"),
         ] {
             assert_eq!(changes(TEXT, &TEXT.replacen(from, to, 1)), [phrase], "{from}");
         }
-        let added = format!("{TEXT}[[zone]]\nname = \"a\"\n");
-        assert_eq!(changes(TEXT, &added), ["zone 1 added"]);
+        let added = format!("{TEXT}[[zone]]\nname = \"a\"\n[access]\nrest_n = 0.5\n");
+        assert_eq!(changes(TEXT, &added), ["ignores a resting hand below 0.5 N", "zone 1, a, added"]);
+        assert_eq!(
+            changes(&added, TEXT),
+            ["ignores a resting hand below 0.5 N: no more", "zone 1, a, removed"]
+        );
+        let played = format!("schema = 1\nname = \"x\"\noutput = \"gamepad\"\n{BUTTON}");
+        let start = BUTTON.replace("SOUTH\"", "START\", label = \"pause\"").replace("fz", "fy");
+        assert_eq!(changes(&played, &format!("{played}{start}")), ["button 2, Start: pause, added"]);
         let many: String = (0..9).map(|index| format!("k{index}_n = 1\n")).collect();
         let told = changes("", &many);
         assert_eq!((told.len(), told.last().map(String::as_str)), (7, Some("and 3 more")));

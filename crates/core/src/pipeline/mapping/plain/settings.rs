@@ -94,9 +94,9 @@ pub const SETTINGS: &[Setting] = &[
     plain("access", "help for hands"),
     number("access.slow_ms", "how long a press must last", Unit::Millisecond),
     number("access.bounce_ms", "pause before the next press counts", Unit::Millisecond),
-    number("access.tremor_hz", "trembling that is calmed: faster than", Unit::Hertz),
+    number("access.tremor_hz", "calms trembling faster than", Unit::Hertz),
     number("access.tremor_per_mm", "less calming while the finger moves", Unit::HertzPerSpeed),
-    number("access.rest_n", "resting hand is ignored: force that counts above it", Unit::Newton),
+    number("access.rest_n", "ignores a resting hand below", Unit::Newton),
     number("access.rest_ms", "how soon a hand counts as resting", Unit::Millisecond),
     plain("gain", "reach of each side"),
     number("gain.up", "upwards", Unit::Factor),
@@ -231,6 +231,16 @@ pub fn amount(place: &str, value: f64) -> String {
         Unit::Degree | Unit::Factor => format!("{value}{}", unit.sign()),
         Unit::Power | Unit::NoNumber => value.to_string(),
         _ => format!("{value} {}", unit.sign()),
+    }
+}
+
+/// The same for who reads no milliseconds: `0.4 seconds`.
+pub fn spoken_amount(place: &str, value: f64) -> String {
+    match (find(place).map(|setting| setting.unit), value / 1e3) {
+        (Some(Unit::Millisecond), 0.5) => "half a second".into(),
+        (Some(Unit::Millisecond), 1.0) => "1 second".into(),
+        (Some(Unit::Millisecond), s) => format!("{s} seconds"),
+        _ => amount(place, value),
     }
 }
 

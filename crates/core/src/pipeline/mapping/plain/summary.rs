@@ -23,7 +23,9 @@ pub struct Summary {
 /// A part of a profile that does something.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// What the hand does: `press into the plate, short press`.
+    /// The button of the profile that it is of, from 1.
+    pub button: Option<usize>,
+    /// What the hand does: `press into the plate, long press`.
     pub hand: String,
     /// What comes of it: `A: jump`.
     pub gives: String,
@@ -31,40 +33,77 @@ pub struct Part {
     pub numbers: String,
 }
 
-/// A setting with its number and unit: `press force 2 N`.
-fn said(place: &str, value: f64) -> String {
-    format!("{} {}", settings::word(place), amount(place, value))
+/// Settings that say nothing to who plays, or helps to play.
+const FINE: [&str; 6] = [
+    "filter_samples",
+    "min_press_ms",
+    "access.tremor_per_mm",
+    "access.rest_ms",
+    "dpad.release_force_n",
+    "button.release_n",
+];
+
+/// For whom a profile is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reader {
+    /// Who plays, or helps to play.
+    Player,
+    /// Who looks after the settings.
+    Tuner,
+}
+
+impl Reader {
+    fn wants(self, place: &str) -> bool {
+        self == Self::Tuner || !FINE.contains(&place)
+    }
+
+    fn amount(self, place: &str, value: f64) -> String {
+        if self == Self::Tuner { amount(place, value) } else { settings::spoken_amount(place, value) }
+    }
+
+    /// Settings with their numbers and units: `press force 2 N, let-go force 1.4 N`.
+    fn said<'a>(self, all: impl IntoIterator<Item = (&'a str, f64)>) -> String {
+        let wanted = all.into_iter().filter(|(place, _)| self.wants(place));
+        let said =
+            wanted.map(|(place, value)| format!("{} {}", settings::word(place), self.amount(place, value)));
+        said.collect::<Vec<_>>().join(", ")
+    }
 }
 
 impl Summary {
     /// Of a profile.
-    pub fn of(profile: &Profile) -> Self {
+    pub fn of(profile: &Profile, reader: Reader) -> Self {
         let sketch = Sketch::of(profile);
-        let mut does = directions(profile);
-        does.extend(moved(profile));
-        does.extend(sketch.buttons.iter().flat_map(presses));
-        Self { name: profile.name.clone(), output: profile.output.name(), does, hand: hand(profile) }
+        let mut does = directions(profile, reader);
+        does.extend(moved(profile, reader));
+        does.extend(sketch.buttons.iter().flat_map(|button| presses(button, reader)));
+        Self { name: profile.name.clone(), output: profile.output.name(), does, hand: hand(profile, reader) }
     }
 }
 
-fn directions(profile: &Profile) -> Vec<Part> {
+fn directions(profile: &Profile, reader: Reader) -> Vec<Part> {
     let Some(dpad) = &profile.dpad else { return Vec::new() };
+    let forces = [
+        ("dpad.min_force_n", dpad.min_force_n.into()),
+        ("dpad.release_force_n", dpad.release_force_n.into()),
+    ];
     let numbers = format!(
-        "from {} on, {}, {}",
+        "from {} on, {}",
         amount("dpad.centre_radius_mm", dpad.centre_radius_mm.into()),
-        said("dpad.min_force_n", dpad.min_force_n.into()),
-        said("dpad.release_force_n", dpad.release_force_n.into())
+        reader.said(forces)
     );
     let keys = [&dpad.up, &dpad.down, &dpad.left, &dpad.right];
     let is_named = |it: &Direction| profile.labels.of(Labelled::Direction(*it)).is_some();
-    if !Direction::ALL.iter().any(is_named) {
+    if dpad.rotation_deg == 0.0 && !Direction::ALL.iter().any(is_named) {
         let gives = keys.map(controls::all_of).join(", ");
-        return vec![Part { hand: "touch above, below, left, right of the middle".into(), gives, numbers }];
+        let hand = "touch above, below, left, right of the middle".into();
+        return vec![Part { button: None, hand, gives, numbers }];
     }
     let one = |(direction, keys): (Direction, _)| {
         let label = profile.labels.of(Labelled::Direction(direction));
         Part {
-            hand: format!("touch {}", beside(direction)),
+            button: None,
+            hand: format!("touch {} the middle", beside(direction, dpad.rotation_deg)),
             gives: named::with_label(&controls::all_of(keys), label),
             numbers: if direction == Direction::Up { numbers.clone() } else { "the same".into() },
         }
@@ -72,23 +111,43 @@ fn directions(profile: &Profile) -> Vec<Part> {
     Direction::ALL.into_iter().zip(keys).map(one).collect()
 }
 
-const fn beside(direction: Direction) -> &'static str {
-    match direction {
-        Direction::Up => "above the middle",
-        Direction::Down => "below the middle",
-        Direction::Left => "left of the middle",
-        Direction::Right => "right of the middle",
-    }
+/// Where places lie, seen from the middle: eight, counter-clockwise from right.
+const PLACES: [&str; 8] = [
+    "right of",
+    "to the upper right of",
+    "above",
+    "to the upper left of",
+    "left of",
+    "to the lower left of",
+    "below",
+    "to the lower right of",
+];
+/// A place that lies farther than this beside one of the eight is told as near it.
+const PLACE_DEG: f32 = 10.0;
+
+/// Where a direction lies, seen from the middle, with all directions turned by so much.
+fn beside(direction: Direction, rotation_deg: f32) -> String {
+    let usual_deg = match direction {
+        Direction::Right => 0.0,
+        Direction::Up => 90.0,
+        Direction::Left => 180.0,
+        Direction::Down => 270.0,
+    };
+    let deg = (usual_deg + rotation_deg).rem_euclid(360.0);
+    let nearest = libm::roundf(deg / 45.0);
+    let about = if (deg - 45.0 * nearest).abs() > PLACE_DEG { "roughly " } else { "" };
+    format!("{about}{}", PLACES[nearest as usize % PLACES.len()])
 }
 
 /// What follows the finger: pointer, sticks, triggers.
-fn moved(profile: &Profile) -> Vec<Part> {
+fn moved(profile: &Profile, reader: Reader) -> Vec<Part> {
     let pointer = profile.pointer.iter().map(|it| {
         let mode = if it.mode == PointerMode::Relative { "relative" } else { "absolute" };
         Part {
+            button: None,
             hand: "touch".into(),
             gives: format!("mouse pointer: {}", values::word("pointer.mode", mode)),
-            numbers: said("pointer.min_force_n", it.min_force_n.into()),
+            numbers: reader.said([("pointer.min_force_n", it.min_force_n.into())]),
         }
     });
     let sticks = profile.sticks.iter().map(|it| {
@@ -97,9 +156,10 @@ fn moved(profile: &Profile) -> Vec<Part> {
             Source::Shear => ("push sideways", "stick.full_n"),
         };
         let numbers = format!("at its end from {} on", amount(place, it.full.into()));
-        Part { hand: hand.into(), gives: named::stick(profile, it.side), numbers }
+        Part { button: None, hand: hand.into(), gives: named::stick(profile, it.side), numbers }
     });
     let triggers = profile.triggers.iter().map(|it| Part {
+        button: None,
         hand: values::word("button.force", "fz").into(),
         gives: named::trigger(profile, it.side),
         numbers: format!(
@@ -112,7 +172,7 @@ fn moved(profile: &Profile) -> Vec<Part> {
 }
 
 /// The kinds of press of a button; the forces stand with the first one, and with each the number that tells it.
-fn presses(button: &ButtonForces) -> Vec<Part> {
+fn presses(button: &ButtonForces, reader: Reader) -> Vec<Part> {
     let place = button.zone.as_ref().map_or_else(String::new, |zone| format!(" in {zone}"));
     let layer = match button.layer.as_deref() {
         None => String::new(),
@@ -120,30 +180,31 @@ fn presses(button: &ButtonForces) -> Vec<Part> {
         Some(layer) => format!(", while layer {layer} is on"),
     };
     let forces = [
-        Some(said("button.press_n", button.press_n.into())),
-        Some(said("button.release_n", button.release_n.into())),
-        button.dwell_ms.map(|ms| said("button.dwell_ms", ms as f64)),
+        Some(("button.press_n", button.press_n.into())),
+        Some(("button.release_n", button.release_n.into())),
+        button.dwell_ms.map(|ms| ("button.dwell_ms", ms as f64)),
     ];
-    let forces = forces.into_iter().flatten().collect::<Vec<_>>().join(", ");
     let one = |(index, does): (usize, &EffectLabel)| {
         let own = match does.role {
-            "hold" => button.long_press_ms.map(|ms| said("button.long_press_ms", ms as f64)),
-            "double" => button.double_press_ms.map(|ms| said("button.double_press_ms", ms as f64)),
-            "hard" => button.hard_press_n.map(|n| said("button.hard_press_n", n.into())),
+            "hold" => button.long_press_ms.map(|ms| ("button.long_press_ms", ms as f64)),
+            "double" => button.double_press_ms.map(|ms| ("button.double_press_ms", ms as f64)),
+            "hard" => button.hard_press_n.map(|n| ("button.hard_press_n", n.into())),
             _ => None,
         };
-        let all = [(index == 0).then(|| forces.clone()), own];
-        let kind = if does.role == "out" { String::new() } else { format!(", {}", does.role_word) };
+        let forces = forces.into_iter().flatten().filter(|_| index == 0);
+        let is_any = does.role_word == settings::word("button.out");
+        let kind = if is_any { String::new() } else { format!(", {}", does.role_word) };
         Part {
+            button: Some(button.number),
             hand: format!("{}{place}{kind}{layer}", values::word("button.force", button.force)),
             gives: does.word.clone(),
-            numbers: all.into_iter().flatten().collect::<Vec<_>>().join(", "),
+            numbers: reader.said(forces.chain(own)),
         }
     };
     button.does.iter().enumerate().map(one).collect()
 }
 
-fn hand(profile: &Profile) -> Vec<(String, String)> {
+fn hand(profile: &Profile, reader: Reader) -> Vec<(String, String)> {
     let ms = |us: u64| us as f64 / 1e3;
     let access = &profile.access;
     let mut told: Vec<(&str, f64)> =
@@ -173,5 +234,51 @@ fn hand(profile: &Profile) -> Vec<(String, String)> {
         let word = settings::word(place);
         if place.starts_with("gain.") { format!("reach {word}") } else { word.to_owned() }
     };
-    told.into_iter().map(|(place, value)| (word(place), amount(place, value))).collect()
+    let wanted = told.into_iter().filter(|(place, _)| reader.wants(place));
+    wanted.map(|(place, value)| (word(place), reader.amount(place, value))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::mapping::read::check::{OutputChoice, read};
+    use crate::pipeline::mapping::read::shipped;
+
+    fn told(change: impl FnOnce(&str) -> String) -> Summary {
+        let text = change(shipped::text("super-mario").unwrap());
+        Summary::of(&read(&text, OutputChoice::AsWritten).0.unwrap(), Reader::Player)
+    }
+
+    #[test]
+    fn places_of_directions_follow_their_turn() {
+        let touched = |deg: &str| {
+            let does = told(|text| text.replace("rotation_deg = 0.0", &format!("rotation_deg = {deg}"))).does;
+            does.into_iter()
+                .filter(|it| it.button.is_none())
+                .map(|it| it.gives + ": " + &it.hand)
+                .collect::<Vec<_>>()
+        };
+        let usual = "up, down, left, right: touch above, below, left, right of the middle";
+        assert_eq!(touched("0.0"), [usual]);
+        let turned = [
+            "up: touch to the upper left of the middle",
+            "down: touch to the lower right of the middle",
+            "left: touch to the lower left of the middle",
+            "right: touch to the upper right of the middle",
+        ];
+        assert_eq!(touched("45.0"), turned);
+        assert_eq!(touched("20.0")[2], "left: touch roughly left of the middle");
+    }
+
+    #[test]
+    fn a_press_is_short_only_beside_a_long_one() {
+        let hands = |summary: Summary| summary.does.into_iter().skip(1).map(|it| it.hand).collect::<Vec<_>>();
+        let both = ["press into the plate, short press", "press into the plate, long press"];
+        assert_eq!(hands(told(str::to_owned)), both);
+        assert_eq!(told(str::to_owned).does[2].numbers, "how long a long press takes 0.4 seconds");
+        assert_eq!(
+            hands(told(|text| text.split("hold = ").next().unwrap().to_owned())),
+            ["press into the plate"]
+        );
+    }
 }

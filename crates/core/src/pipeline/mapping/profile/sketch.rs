@@ -181,7 +181,7 @@ pub struct ButtonForces {
 pub struct EffectLabel {
     /// The kind of press, as its key in the profile.
     pub role: &'static str,
-    /// The same for people: `short press`.
+    /// The same for people: `short press`; `press` where none is long.
     pub role_word: &'static str,
     /// Names of controls with `+` between them, or what it acts on in words.
     pub keys: String,
@@ -381,7 +381,10 @@ impl ButtonForces {
             zone: button.place.and_then(|place| place_name(place, profile)),
             layer: layer_name(button.when, profile),
             does: effects
-                .filter_map(|(role, effect)| Some(EffectLabel::of(index, role, &effect?, profile)))
+                .filter_map(|(role, effect)| {
+                    let is_any = role == Role::Tap && hold.is_none();
+                    Some(EffectLabel::of(index, role, is_any, &effect?, profile))
+                })
                 .collect(),
         }
     }
@@ -403,7 +406,8 @@ fn layer_name(when: When, profile: &Profile) -> Option<String> {
 }
 
 impl EffectLabel {
-    fn of(index: usize, role: Role, effect: &Effect, profile: &Profile) -> Self {
+    /// `is_any` where it comes of each press, however long.
+    fn of(index: usize, role: Role, is_any: bool, effect: &Effect, profile: &Profile) -> Self {
         let acts_on = match &effect.output {
             Output::Keys(_) => effect
                 .output
@@ -428,7 +432,7 @@ impl EffectLabel {
         };
         Self {
             role: role.name(),
-            role_word: settings::word(role.place()),
+            role_word: settings::word(if is_any { Role::Out.place() } else { role.place() }),
             keys: acts_on + &follows,
             word: named::effect(profile, index, role, effect),
         }

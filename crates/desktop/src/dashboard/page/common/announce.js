@@ -3,6 +3,8 @@
 import { announces } from "./settings.js";
 
 const BETWEEN_MS = 1000;
+/** Whoever reads the page later finds no sentence that is true no more. */
+const STAYS_MS = 10_000;
 /** Why a press does not count. */
 export const REASONS = { slow: "too short", bounce: "too soon after the last", dwell: "not at rest" };
 
@@ -12,6 +14,7 @@ const counts = new Map();
 let sentences = [];
 let last_ms = -Infinity;
 let timer = null;
+let clearing = null;
 
 function flush() {
   timer = null;
@@ -26,6 +29,8 @@ function flush() {
   // A text that is repeated word for word is not spoken again, so it alternates with a blank behind it.
   const text = parts.join(". ");
   region().textContent = region().textContent === text ? `${text}\u00a0` : text;
+  clearTimeout(clearing);
+  clearing = setTimeout(() => { region().textContent = ""; }, STAYS_MS);
 }
 
 function schedule() {

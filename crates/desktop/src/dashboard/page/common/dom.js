@@ -41,6 +41,11 @@ export function say(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
+/** Tells the style sheet how high an element is: what sticks to an edge must not cover what has the focus. */
+export function measured(node, name) {
+  new ResizeObserver(() => document.documentElement.style.setProperty(name, `${node.offsetHeight}px`)).observe(node);
+}
+
 /** A button that does not submit. */
 export function button(label, onclick, properties = {}) {
   return el("button", { type: "button", text: label, onclick, ...properties });

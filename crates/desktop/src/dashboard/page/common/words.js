@@ -71,3 +71,14 @@ export function controlsWritten(device, words) {
   if (isWritten) return words;
   return words.split("+").map((word) => known.find(([, it]) => same(it, word.trim()))?.[0] ?? word.trim()).join("+");
 }
+
+/** What bindings are for. */
+export const DEVICES = new Set(["gamepad", "keyboard", "pointer"]);
+
+/** How a value reads: "2 N", "yes", "left Ctrl + C". @param {(string | number)[]} path */
+export function valueInWords(path, value) {
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  if (typeof value === "number") return `${value} ${settingAt(path).unit}`.trimEnd();
+  const device = path.slice(1).find((part) => DEVICES.has(part));
+  return device === undefined ? choiceInWords(path, String(value)) : controlsInWords(device, String(value));
+}

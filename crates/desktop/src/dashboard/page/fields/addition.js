@@ -7,8 +7,12 @@ import { capital, choicesOf, controlsOf } from "../common/words.js";
 const NEW_ZONES = {
   "upper right": [20, 70], "upper left": [110, 160], "lower left": [200, 250], "lower right": [290, 340],
 };
+/** What is looked for by another word. */
+const KNOWN_AS = { BTN_START: "pause in most games" };
 /** Asked of tactpad itself; the others are controls of a device. */
 const ASKED = "bridge ";
+
+const PUSHES = "To push up, down, left or right, the plate is pushed along itself, as a stick; it is not touched above, below or beside the middle.";
 
 const choice = (label, options) => {
   const select = el("select", { class: "main" }, ...options.map(([value, text]) => el("option", { value, text })));
@@ -26,15 +30,16 @@ export async function askAddition(sketch, schema) {
   const how = choice("What your finger does", Object.entries(choicesOf(["button", "force"]))
     .map(([force, word]) => [force, taken(force) === "" ? capital(word) : `${capital(word)} (does ${taken(force)} already)`]));
   const directions = sketch.dpad === null ? [] : ["up", "down", "left", "right"];
-  const own = [...sketch.zones.map(({ name }) => name), ...directions].map((name) => [name, `In ${name}`]);
+  const own = [...sketch.zones.map(({ name }) => name), ...directions].map((name) => [name, `Only in the part ${name}`]);
   const where = choice("Where", [["", "Anywhere on the plate"], ...own, ...Object.keys(NEW_ZONES).filter((name) => !own.some(([it]) => it === name)).map((name) => [name, `In a new zone: ${name}`])]);
   const what = choice("What comes of it", [
-    ...controlsOf(sketch.output).filter(([name]) => schema.canBind(sketch.output, name)).map(([name, word]) => [name, capital(word)]),
+    ...controlsOf(sketch.output).filter(([name]) => schema.canBind(sketch.output, name)).map(([name, word]) => [name, name in KNOWN_AS ? `${capital(word)} (${KNOWN_AS[name]})` : capital(word)]),
     ...Object.entries(choicesOf(["button", "out", "bridge"])).map(([command, word]) => [ASKED + command, `tactpad itself: ${word}`])]);
+  how.select.setAttribute("aria-describedby", "about-pushes");
   const free = [...how.select.options].find(({ value }) => taken(value) === "");
   if (free) how.select.value = free.value;
   const label = el("input", { type: "text", class: "main", maxlength: 64, autocomplete: "off" });
-  const body = el("div", { class: "asked" }, how.node, where.node, what.node, el("label", { class: "chooser" }, "Its name in the game, if you like", label));
+  const body = el("div", { class: "asked" }, how.node, el("p", { class: "help", id: "about-pushes", text: PUSHES }), where.node, what.node, el("label", { class: "chooser" }, "Its name in the game, if you like", label));
   return ask("Add a button", body, [{ label: "Add", answer: () => ({
     zone: where.select.value === "" ? null : { name: where.select.value, edges: own.some(([name]) => name === where.select.value) ? null : NEW_ZONES[where.select.value] },
     force: how.select.value, control: what.select.value, label: label.value.trim() }) }]);

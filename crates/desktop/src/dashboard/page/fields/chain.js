@@ -13,14 +13,14 @@ const amount = (place, value) => `${Number(value.toFixed(2))} ${settingAt(place)
 
 /** Each part of a sketch that does something, by the tables of profiles. @type {Record<string, (part: any) => Line>} */
 const LINES = {
-  dpad: ({ sectors, min_force_n }) => ({
-    hand: "touch beside the middle", gives: [sectors.filter(({ directions }) => directions.length === 1).map(({ word }) => word).join(", ")], amount: amount(["dpad", "min_force_n"], min_force_n) }),
+  dpad: ({ sectors, rotation_deg, min_force_n }) => ({
+    hand: "touch beside the middle", gives: [sectors.filter(({ directions }) => directions.length === 1).map(({ word }) => word).join(", ") + (rotation_deg === 0 ? "" : `, turned by ${rotation_deg}°`)], amount: amount(["dpad", "min_force_n"], min_force_n) }),
   pointer: ({ min_force_n }) => ({ hand: "touch beside the middle", gives: ["mouse pointer"], amount: amount(["pointer", "min_force_n"], min_force_n) }),
   stick: ({ from, word }) => ({ hand: from === "place" ? "touch beside the middle" : "push sideways", gives: [word], amount: "" }),
   trigger: ({ word, full_n }) => ({ hand: "press into the plate", gives: [word], amount: amount(["trigger", "full_n"], full_n) }),
   button: ({ force, zone, layer, does, press_n }) => ({
     hand: `${choiceInWords(["button", "force"], force)}${zone === null ? "" : ` in ${zone}`}${layer === null ? "" : `, ${layer}`}`,
-    gives: does.map(({ role, role_word, word }) => (role === "out" ? word : `${role_word}: ${word}`)), amount: amount(["button", "press_n"], press_n) }),
+    gives: does.map(({ role_word, word }) => (role_word === settingAt(["button", "out"]).word ? word : `${role_word}: ${word}`)), amount: amount(["button", "press_n"], press_n) }),
 };
 const SKETCHED = { button: "buttons", stick: "sticks", trigger: "triggers" };
 

@@ -4,11 +4,10 @@ import { captureButton } from "./capture.js";
 import { el, say, set } from "../common/dom.js";
 import { NumberField } from "./number_field.js";
 import { nameOf, tidy } from "./schema.js";
-import { capital, choiceInWords, choiceWritten, controlsInWords, controlsWritten, pathInWords, settingAt } from "../common/words.js";
+import { capital, choiceWritten, controlsWritten, DEVICES, pathInWords, settingAt, valueInWords } from "../common/words.js";
 
-/** Where to begin with what is off as usual. */
-const BEGINNINGS = { rest_n: 0.5, tremor_hz: 2 };
-const DEVICES = new Set(["gamepad", "keyboard", "pointer"]);
+/** What is off as usual: what its tick turns on, and where to begin. */
+const SWITCHES = { rest_n: { turnsOn: "Ignore a resting hand", beginning: 0.5 }, tremor_hz: { turnsOn: "Calm trembling", beginning: 2 } };
 let fields = 0;
 
 export class Field {
@@ -28,12 +27,19 @@ export class Field {
     this.note = el("span", { class: "field-note quiet", id: `${this.id}-note` });
     this.back = el("button", { type: "button", class: "back", text: "↺", title: "As usual", "aria-label": `${this.setting.word}: as usual`, onclick: () => this.#unwrite() });
     const { word, unit } = this.setting;
-    this.node = el("div", { class: `field ${about.kind}` },
-      el("label", { for: this.id }, capital(word), el("code", { class: "code-name", "aria-hidden": "true", text: about.key })),
-      el("div", { class: "field-controls" }, this.control, unit === "" ? null : el("span", { class: "quiet", text: unit, "aria-hidden": "true" }), ...this.#extras(), this.back, this.note, this.number?.range),
+    const code = el("code", { class: "code-name", "aria-hidden": "true", text: about.key });
+    if (about.key in SWITCHES) this.#makeTick(SWITCHES[about.key]);
+    this.node = el("div", { class: `field ${about.kind}` }, el("label", { for: this.id, class: this.tick === undefined ? null : "unseen" }, capital(word), code),
+      el("div", { class: "field-controls" }, this.tickLabel, this.control, unit === "" ? null : el("span", { class: "quiet", text: unit, "aria-hidden": "true" }), ...this.#extras(), this.back, this.note, this.number?.range),
       this.number?.error,
       el("p", { class: "help", id: `${this.id}-help`, text: about.help }));
     this.refresh();
+  }
+
+  /** What can be off has a tick before its number. */
+  #makeTick({ turnsOn, beginning }) {
+    this.tick = el("input", { type: "checkbox", "aria-describedby": this.described, onchange: () => this.#write(this.tick.checked ? beginning : null) });
+    this.tickLabel = el("label", { class: "check" }, this.tick, turnsOn);
   }
 
   get #numeric() {
@@ -55,9 +61,7 @@ export class Field {
 
   /** How a value reads. */
   #inWords(value) {
-    if (typeof value === "boolean") return value ? "yes" : "no";
-    if (typeof value === "number") return `${value} ${this.setting.unit}`.trimEnd();
-    return DEVICES.has(this.about.kind) ? controlsInWords(this.about.kind, String(value)) : choiceInWords(this.path, String(value));
+    return valueInWords(this.path, value);
   }
 
   /** What stands in the file for words; null for none. */
@@ -82,7 +86,7 @@ export class Field {
       step,
       limits: () => this.values.limits(this.path),
       blank: required ? "" : ", or ↺ for the usual",
-      start: () => this.values.at(this.path) ?? BEGINNINGS[this.about.key] ?? this.about.min ?? 0,
+      start: () => this.values.at(this.path) ?? SWITCHES[this.about.key]?.beginning ?? this.about.min ?? 0,
       take: (value) => this.#typed(value),
     }, { "aria-describedby": this.described, onfocusout: () => { this.#gesture = null; } });
     return this.number;
@@ -132,7 +136,8 @@ export class Field {
     if (this.values.draft.waitsFor(this.path)) return;
     const value = this.values.at(this.path);
     const written = this.values.isWritten(this.path);
-    this.back.hidden = !written || this.about.required;
+    this.back.hidden = !written || this.about.required || this.tick !== undefined;
+    if (this.tick !== undefined) this.tick.checked = written;
     this.node.classList.toggle("unwritten", !written);
     say(this.note, written ? "" : this.#unwritten(value));
     if (this.about.kind === "boolean") this.control.checked = value === true;
@@ -144,7 +149,7 @@ export class Field {
   /** What holds while nothing is written. */
   #unwritten(value) {
     if (value !== undefined) return `as usual: ${this.#inWords(value)}`;
-    const beginning = BEGINNINGS[this.about.key];
+    const { beginning } = SWITCHES[this.about.key] ?? {};
     return beginning === undefined ? "" : `off; ${this.#inWords(beginning)} is a good beginning`;
   }
 

@@ -45,9 +45,10 @@ export class Form {
    * @param {import("./values.js").Values} values
    * @param {import("./schema.js").Schema} schema
    * @param {(part: string | null) => void} light is told which part of the plate belongs to what was opened: "dpad", or a zone
+   * @param {(sentence: string) => void} tell is told what is to be read once the draft was changed
    */
-  constructor(values, schema, light) {
-    Object.assign(this, { values, schema, light });
+  constructor(values, schema, light, tell) {
+    Object.assign(this, { values, schema, light, tell });
     this.groups = el("div", { class: "groups" });
     this.state = el("p", { class: "warn" });
     this.lists = ["gamepad", "keyboard", "pointer"].map((device) => el("datalist", { id: `names-${device}` },
@@ -84,6 +85,7 @@ export class Form {
   #apply(sentence, goTo, change, opened = null) {
     this.#goTo = goTo;
     if (opened !== null) this.#opened.set(opened, true);
+    this.tell(sentence);
     change();
     announce(sentence);
   }
@@ -233,7 +235,8 @@ export class Form {
 
   #effects(path, value) {
     const present = EFFECTS.filter((effect) => value[effect] !== undefined);
-    const parts = present.map((effect) => this.#part([...path, effect], capital(settingAt([...path, effect]).word), present.length === 1 ? null : () => this.#removeEffect(path, effect)));
+    const wordOf = (effect) => settingAt([...path, effect === "tap" && value.hold === undefined ? "out" : effect]).word;
+    const parts = present.map((effect) => this.#part([...path, effect], capital(wordOf(effect)), present.length === 1 ? null : () => this.#removeEffect(path, effect)));
     const fitting = present.length === 0 ? ["out", "tap"] : { out: [], tap: ["double", "hold"], light: ["hard"] }[present[0]] ?? [];
     const adders = fitting.filter((effect) => !present.includes(effect))
       .map((effect) => [effect, `+ ${settingAt([...path, effect]).word}`])
@@ -250,7 +253,16 @@ export class Form {
   #removeEffect(path, effect) {
     const alone = Object.keys(IN_SIGHT_BESIDE).filter((key) => IN_SIGHT_BESIDE[key] === effect && this.values.isWritten([...path, key]));
     const others = EFFECTS.filter((other) => other !== effect).map((other) => `[data-part="${nameOf([...path, other])}"] [data-field]`);
-    this.#apply(`Removed: ${settingAt([...path, effect]).word}.`, [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.#draft.change([effect, ...alone].map((key) => ({ table: path, key, value: null }))));
+    this.#apply(this.#turnedOff(path, effect), [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.#draft.change([effect, ...alone].map((key) => ({ table: path, key, value: null }))));
+  }
+
+  /** Says, too, what is on no button then. */
+  #turnedOff(path, effect) {
+    const { sketch } = this.#draft;
+    const all = sketch?.buttons.flatMap(({ number, does }) => does.map((one) => ({ ...one, isIt: number - 1 === path[1] && one.role === effect }))) ?? [];
+    const gone = all.find(({ isIt }) => isIt);
+    const isElsewhere = all.some(({ isIt, keys }) => !isIt && keys === gone?.keys);
+    return `The ${settingAt([...path, effect]).word} is turned off${gone === undefined || isElsewhere ? "" : `: ${gone.word} is on no button now`}.`;
   }
 
   #bindings(path, device) {

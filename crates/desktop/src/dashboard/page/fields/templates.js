@@ -53,15 +53,36 @@ function trimmed(lines, { from, to }) {
   return { from, to: end };
 }
 
+/** The lines of a table with the comment right above it; null if there is none. */
+function withComment(lines, table, index) {
+  const found = span(lines, table, index);
+  if (found === null) return null;
+  let { from, to } = trimmed(lines, found);
+  while (from > 0 && isComment(lines[from - 1])) from -= 1;
+  return { from, to };
+}
+
 /** The text without a table, and without the comment right above it. */
 export function withoutTable(text, table, index = 0) {
   const lines = text.split("\n");
-  const found = span(lines, table, index);
+  const found = withComment(lines, table, index);
   if (found === null) return text;
-  let { from, to } = trimmed(lines, found);
-  while (from > 0 && isComment(lines[from - 1])) from -= 1;
+  let { from, to } = found;
   while (isBlank(lines[to]) && (from === 0 || isBlank(lines[from - 1]))) to += 1;
   lines.splice(from, to - from);
+  return lines.join("\n");
+}
+
+/** The text with a table of an older text, at this place among those of its name. */
+export function withTableBack(text, table, at, older, index) {
+  const [lines, olderLines] = [text.split("\n"), older.split("\n")];
+  const found = withComment(olderLines, table, index);
+  if (found === null) return text;
+  const back = olderLines.slice(found.from, found.to);
+  const [ahead, behind] = [withComment(lines, table, at - 1), withComment(lines, table, at)];
+  if (ahead !== null) lines.splice(ahead.to, 0, "", ...back);
+  else if (behind !== null) lines.splice(behind.from, 0, ...back, "");
+  else return withText(text, `${back.join("\n")}\n`);
   return lines.join("\n");
 }
 

@@ -3,6 +3,7 @@
 import { announce } from "../common/announce.js";
 import { get, post } from "../link/api.js";
 import { button, el, number, row, say, scroller, set, table } from "../common/dom.js";
+import { capital } from "../common/words.js";
 import { duration } from "./latency.js";
 
 const SIGNS = { playing: "▶", paused: "❚❚", taring: "◌", unweighed: "◌", weighing: "◌", waiting: "…", loaded: "⚠", doubtful: "⚠", denied: "✕", unclear: "⚠", silent: "⚠", faulty: "✕", refused: "✕" };
@@ -29,6 +30,12 @@ export async function command(path, done, body = {}) {
 /** Shows a sentence about a command that failed, until one is obeyed. */
 export function failure(sentence) {
   say(document.getElementById("failure"), sentence === "" ? "" : `✕ ${sentence}`);
+}
+
+/** What keeps presses back, and what to do. */
+export function stateInWords({ state, sentence }) {
+  const why = capital(state === "paused" ? "paused: press Go on" : sentence ?? state);
+  return why.includes("nothing is pressed") ? `${why}.` : `${why}. Until then nothing is pressed.`;
 }
 
 export class Status {
@@ -99,7 +106,7 @@ export class Status {
   /** Shows a status message. */
   draw({ status }) {
     if (status.state !== this.#state) this.#changed(status);
-    this.#explain(status.sentence === status.state ? "" : status.sentence ?? "");
+    this.#explain(GOOD.has(status.state) ? "" : stateInWords(status));
     for (const [key, node] of this.lines) {
       const text = status[key] ?? (key === "pad" ? status.described?.title : null) ?? null;
       say(node, text ?? "–");

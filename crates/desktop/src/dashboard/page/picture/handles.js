@@ -30,7 +30,7 @@ export class Handle {
     this.step = settingAt(spec.path).step;
     set(element, { role: "slider", tabindex: 0, "data-handle": nameOf(spec.path), "aria-label": spec.label });
     element.classList.add("handle");
-    element.addEventListener("pointerdown", (event) => this.#down(event));
+    element.addEventListener("pointerdown", (event) => event.button === 0 && this.grab(event));
     element.addEventListener("pointermove", (event) => this.#moved(event));
     for (const end of ["pointerup", "pointercancel"]) element.addEventListener(end, () => this.#up());
     element.addEventListener("keydown", (event) => this.#key(event));
@@ -67,8 +67,8 @@ export class Handle {
     this.#values.write(this.path, next, this.#gesture);
   }
 
-  #down(event) {
-    if (event.button !== 0) return;
+  /** From here on the pointer drags it. */
+  grab(event) {
     event.preventDefault();
     this.element.focus();
     this.element.setPointerCapture(event.pointerId);

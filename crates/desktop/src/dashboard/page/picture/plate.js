@@ -57,7 +57,7 @@ export class Plate {
         "data-sector": index,
         "data-part": "dpad",
       }));
-      this.#name(word_at_mm, word);
+      this.#name(word_at_mm, word).dataset.direction = index;
     }
     this.#ring(centre, dpad.centre_radius_mm, "starts");
     this.#ring(centre, dpad.release_radius_mm, "ends");
@@ -86,8 +86,10 @@ export class Plate {
     // What a control does in the game stands in a line of its own.
     const lines = text.split(": ");
     const above = ((lines.length - 1) * LINE_EM) / 2;
-    this.layers.names.append(svg("text", { class: `plate-name ${kind}` }, ...lines.map((line, index) => (
-      svg("tspan", { x, y: -y, dy: `${index * LINE_EM - above}em`, text: index + 1 < lines.length ? `${line}: ` : line })))));
+    const node = svg("text", { class: `plate-name ${kind}` }, ...lines.map((line, index) => (
+      svg("tspan", { x, y: -y, dy: `${index * LINE_EM - above}em`, text: index + 1 < lines.length ? `${line}: ` : line }))));
+    this.layers.names.append(node);
+    return node;
   }
 
   #drawCentre([x, y]) {

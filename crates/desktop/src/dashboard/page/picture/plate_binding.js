@@ -1,4 +1,4 @@
-// "Change a key on the plate": press there, on the pad or in the picture, then the key or the gamepad's button.
+// "Change what a place presses": first the place, in the picture or on the pad, then the key or the gamepad's button.
 
 import { Capture } from "../fields/capture.js";
 import { partsAt, reached } from "./touch.js";
@@ -7,8 +7,9 @@ import { button, el, say, set } from "../common/dom.js";
 import { controlsInWords } from "../common/words.js";
 
 const UNCHANGED = "Nothing was changed.";
-const LABEL = "Change a key on the plate";
-const WHERE = "Press on the pad, or in the picture, where another key or button shall come; Escape ends this.";
+const LABEL = "Change what a place presses";
+const WHICH = "Which one?";
+const WHERE = "First the place: click it in the picture, or press there on the pad. It stays where it is, and gets another key or button. Escape ends this.";
 /** What turns on, moves, and leaves is the page's, not the game's. */
 const FREE_KEYS = new Set(["Tab", "Shift"]);
 
@@ -60,7 +61,7 @@ export class PlateBinding {
   #clicked(event) {
     if (this.#sketch === null || event.target.closest(".handle")) return;
     const found = bindingsAt(this.#sketch, this.plate.at(event));
-    if (this.#state === "where") this.#found(found);
+    if (this.#state === "where" || this.#state === "which") this.#found(found, WHICH);
     else if (this.#state === "off" && found.length > 0) this.pick(groupOf(found[0]));
   }
 
@@ -111,15 +112,16 @@ export class PlateBinding {
       if (this.#pressed === null || most > this.#pressed.most) this.#pressed = { x_mm, y_mm, fx_n, fy_n, fz_n, most };
     }
     if (contact !== null || this.#pressed === null || held.length > 0) return;
-    this.#found(bindingsAt(this.#sketch, { x: this.#pressed.x_mm, y: -this.#pressed.y_mm }, this.#pressed));
+    this.#found(bindingsAt(this.#sketch, { x: this.#pressed.x_mm, y: -this.#pressed.y_mm }, this.#pressed), "The pad was pressed there. Change this one?");
   }
 
-  #found(bindings) {
+  /** A click was meant; a press on the pad may be anybody's, and is asked about. */
+  #found(bindings, question) {
     if (bindings.length === 0) return this.#leave("Nothing is bound there: add a button or directions among the settings.");
-    if (bindings.length === 1) return this.#listen(bindings[0]);
-    this.#go("which", "Which one?");
+    if (bindings.length === 1 && question === WHICH) return this.#listen(bindings[0]);
+    this.#go("which", question);
     this.choices.replaceChildren(...bindings.map((binding) => button(binding.name, () => this.#listen(binding), { class: "main" })));
-    announce(`Which one? ${bindings.map(({ name }) => name).join(", ")}.`);
+    announce(`${question} ${bindings.map(({ name }) => name).join(", ")}.`);
     this.choices.querySelector("button").focus();
   }
 

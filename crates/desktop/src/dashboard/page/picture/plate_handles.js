@@ -9,6 +9,8 @@ const RIM_MM = 32.5;
 const HIT_MM = 3.3;
 const FAR_MM = 33;
 const ARM_MM = 5;
+/** A word that is pressed is dragged from here on. */
+const DRAG_PX = 4;
 /** The handle that turns directions leaves room for the word of the first. */
 const BESIDE_WORD_DEG = 12;
 
@@ -17,12 +19,33 @@ export class PlateHandles {
   #handles = [];
   #shape = "";
   #shapes = new Set();
+  /** The one that turns directions. @type {Handle | null} */
+  #turning = null;
+  /** How far beside the turn it is held. */
+  #held_deg = BESIDE_WORD_DEG;
+  /** Where a word was pressed that may be dragged. @type {PointerEvent | null} */
+  #word = null;
 
   /** @param {import("./plate.js").Plate} plate @param {import("../fields/values.js").Values} values */
   constructor(plate, values) {
     this.plate = plate;
     this.values = values;
     this.legend = el("ul", { class: "legend", "aria-label": "Handles on the plate" });
+    plate.node.addEventListener("pointerdown", (event) => this.#down(event));
+    plate.node.addEventListener("pointermove", (event) => this.#moved(event));
+  }
+
+  /** A word of a direction is held like the square; a click on it is none. */
+  #down(event) {
+    const onWord = event.button === 0 && this.#turning !== null && event.target.closest("[data-direction]") && !this.plate.node.classList.contains("asks");
+    this.#held_deg = onWord ? seenFrom(this.#centre, this.plate.at(event)).deg - this.#turn : BESIDE_WORD_DEG;
+    this.#word = onWord ? event : null;
+  }
+
+  #moved(event) {
+    if (this.#word === null || Math.hypot(event.clientX - this.#word.clientX, event.clientY - this.#word.clientY) < DRAG_PX) return;
+    this.#word = null;
+    if (event.buttons === 1) this.#turning.grab(event);
   }
 
   get #centre() {
@@ -54,6 +77,7 @@ export class PlateHandles {
   #make(document, shape) {
     this.#shape = shape;
     this.#handles = [];
+    this.#turning = null;
     this.plate.layers.handles.replaceChildren();
     this.#shapes = new Set();
     this.#makeCentre();
@@ -110,7 +134,8 @@ export class PlateHandles {
       (value) => polar(this.#centre, 225, radius() - value), (point) => radius() - seenFrom(this.#centre, point).radius_mm);
     this.#add(path("rotation_deg"), "Turn of all directions", TURN,
       (value) => onRim(this.#centre, mirror.sign(values.mirrored, value) + BESIDE_WORD_DEG),
-      (point) => mirror.sign(values.mirrored, near(seenFrom(this.#centre, point).deg - BESIDE_WORD_DEG, this.#turn)));
+      (point) => mirror.sign(values.mirrored, near(seenFrom(this.#centre, point).deg - this.#held_deg, this.#turn)));
+    this.#turning = this.#handles.at(-1);
     if (mode === "4way") return;
     this.#add(path("diagonal_deg"), "Width of the diagonals", DIAMOND,
       (value) => onRim(this.#centre, this.#turn + 45 + value / 2),
@@ -151,7 +176,7 @@ const TURN = "M-1.3-1.3H1.3V1.3H-1.3Z";
 const ARROWS_X = "M-1.9 0L-.5-1.2V1.2ZM1.9 0L.5-1.2V1.2Z";
 const ARROWS_Y = "M0-1.9L-1.2-.5H1.2ZM0 1.9L-1.2 .5H1.2Z";
 /** What each shape changes. */
-const LEGEND = [[ARROWS_X, "where the hand has its middle"], [RING, "how far out"], [DIAMOND, "how wide around the plate"], [TURN, "all directions turned"]];
+const LEGEND = [[ARROWS_X, "where the hand has its middle"], [RING, "how far out"], [DIAMOND, "how wide around the plate"], [TURN, "all directions turned, as by dragging one of their words: one alone cannot be moved"]];
 
 /** Just outside of the plate in a direction from the hand's centre. */
 function onRim(centre, deg) {

@@ -2,7 +2,7 @@
 
 import { announce } from "../common/announce.js";
 import { get } from "../link/api.js";
-import { button, el, say } from "../common/dom.js";
+import { button, el, measured, say } from "../common/dom.js";
 import { Draft } from "./draft.js";
 import { LastTouch } from "../live/last_touch.js";
 import { ForceHandles } from "../picture/force_handles.js";
@@ -28,6 +28,10 @@ export class ProfileView {
   #opening = null;
   #reading = false;
   #previewed = false;
+  #isPaused = false;
+  #playing = "";
+  /** The profile of which the message says that it was saved. */
+  #saved = null;
   /** @type {import("./draft_store.js").DraftStore | null} */
   #draftStore = null;
   /** A draft that this browser has stored, to be opened first. @type {import("./draft_store.js").StoredDraft | null} */
@@ -38,11 +42,13 @@ export class ProfileView {
 
   constructor(section) {
     this.section = section;
+    measured(document.getElementById("preview-notice"), "--notice-height");
     this.draft = new Draft();
     this.preview = new Preview(this.draft, (sentence) => this.#tell(sentence));
     this.#makeBar();
     this.body = el("div");
     section.append(this.bar, this.body);
+    measured(this.bar, "--bar-height");
     section.addEventListener("keydown", (event) => this.#shortcut(event));
     addEventListener("beforeunload", (event) => this.draft.dirty && !this.#leaving && event.preventDefault());
     this.draft.addEventListener("text", () => this.text?.showText());
@@ -56,14 +62,14 @@ export class ProfileView {
     this.undo = button("Undo", () => this.draft.move(-1), { id: "undo", class: "main", "aria-keyshortcuts": "Control+Z" });
     this.redo = button("Redo", () => this.draft.move(1), { id: "redo", class: "main", "aria-keyshortcuts": "Control+Y" });
     this.save = button("Save", () => this.#save(), { id: "save", class: "main primary", "aria-keyshortcuts": "Control+S" });
-    this.revert = button("Revert", () => this.draft.replace(this.draft.saved), { id: "revert", class: "main" });
+    this.revert = button("Revert", () => this.#revert(), { id: "revert", class: "main" });
     this.saves = button("Earlier saves", () => this.profileHistory?.reveal(), { id: "saves", class: "main" });
-    this.live = el("input", { type: "checkbox", id: "preview", checked: true, onchange: () => this.#allowPreview(this.live.checked) });
+    this.live = el("input", { type: "checkbox", id: "preview", checked: true, onchange: () => this.#playChanges(this.live.checked) });
     this.state = el("span", { id: "draft-state" });
     this.message = el("p", { class: "editor-message", role: "status" });
     this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
       el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert, this.saves,
-      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), button("Print …", () => this.#print(), { id: "print", class: "main" }), el("label", { class: "check main" }, this.live, "Play changes at once"), this.state, this.message));
+      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), button("Print …", () => this.#print(), { id: "print", class: "main" }), button("Export", () => this.#answer(this.profileHistory?.exportNow() ?? ""), { id: "export-now", class: "main" }), el("label", { class: "check main" }, this.live, "Play changes at once"), this.state, this.message));
   }
 
   /** Makes what needs the schema, once. */
@@ -75,13 +81,16 @@ export class ProfileView {
     this.plateHandles = new PlateHandles(this.plate, this.values);
     this.plateBinding = new PlateBinding(this.plate, this.values, (group) => this.form.pick(group));
     this.forceHandles = new ForceHandles(this.values);
-    this.form = new Form(this.values, schema, (part) => this.plate.pick(part));
+    this.form = new Form(this.values, schema, (part) => this.plate.pick(part), (sentence) => { this.#told = sentence; });
     this.text = new TextPane(this.draft);
     this.rewind = new Rewind(this.draft);
     this.profileHistory = new ProfileHistory({
-      draft: (text, sentence) => this.#showDraft(sentence, () => this.draft.replace(text)),
-      change: (changes, sentence) => this.#showDraft(sentence, () => this.draft.change(changes)),
-      document: () => this.draft.document,
+      draft: (text, sentence) => this.#showDraft(sentence, text),
+      draftUnplayed: (text, sentence) => {
+        this.#playChanges(false);
+        this.#showDraft(sentence, text);
+      },
+      text: () => this.draft.text,
       open: (name) => this.#reopen(name),
       mayDrop: async () => !this.draft.dirty || await askDrop(this.#name) === true,
     });
@@ -123,10 +132,16 @@ export class ProfileView {
     if (profile !== undefined) await this.profileHistory.show(profile).catch((error) => this.#tell(error.message));
   }
 
-  #showDraft(sentence, change) {
+  #showDraft(sentence, text) {
     this.#told = sentence;
     announce(sentence);
-    change();
+    this.draft.replace(text);
+  }
+
+  /** Answers a button of the bar. */
+  #answer(sentence) {
+    this.#tell(sentence);
+    announce(sentence);
   }
 
   /** Opens a profile of this name, or the one in play with null, whatever becomes of the draft; the list is another one. */
@@ -191,8 +206,7 @@ export class ProfileView {
     const { profile, version, text, at_ms } = this.#found;
     this.#found = null;
     showStored(null);
-    this.live.checked = false;
-    this.#allowPreview(false);
+    this.#playChanges(false);
     const saved = await readProfile(profile).catch(() => null);
     this.#opened(profile, version, saved?.text ?? "", text);
     const changed = saved?.version === version ? "" : " The file was changed meanwhile: Save asks before it writes.";
@@ -223,7 +237,14 @@ export class ProfileView {
   }
 
   #tell(sentence) {
+    this.#saved = null;
     say(this.message, sentence);
+  }
+
+  /** What became of the text that was saved, as long as nothing else is told. */
+  #tellSaved(saved) {
+    this.#tell(saved !== this.#playing ? "Saved. To play it, choose it on the page Live." : this.#isPaused ? "Saved. tactpad is paused: Go on plays it." : "Saved, and in play.");
+    this.#saved = saved;
   }
 
   #checked() {
@@ -250,7 +271,13 @@ export class ProfileView {
     say(this.state, `${dirty ? "● not saved" : "✓ saved"}${valid ? "" : ", ✕ has errors: see the profile's text"}`);
   }
 
-  #allowPreview(allowed) {
+  #revert() {
+    if (!this.draft.dirty) return;
+    this.#showDraft("What you changed is dropped: Undo brings it back.", this.draft.saved);
+  }
+
+  #playChanges(allowed) {
+    this.live.checked = allowed;
     this.preview.enabled = allowed;
     this.preview.follow();
   }
@@ -281,8 +308,8 @@ export class ProfileView {
       this.#name = name;
       this.#version = answer.version;
       this.draft.markSaved(text);
-      const playing = await this.#list();
-      this.#tell(playing === name ? "Saved, and in play." : "Saved. To play it, choose it on the page Live.");
+      this.#playing = await this.#list();
+      this.#tellSaved(name);
       this.message.title = answer.path;
       await this.#showHistory();
     } catch (error) {
@@ -291,6 +318,7 @@ export class ProfileView {
   }
 
   async #notSaved(error, name, version) {
+    location.hash = "#profile";
     if (error.status === 422) {
       const count = error.body.diagnostics.filter(({ severity }) => severity === "error").length;
       return this.#tell(`Not saved: the text has ${plural(count, "error")}.`);
@@ -325,13 +353,16 @@ export class ProfileView {
     say(this.touched, this.lastTouch.sentence(this.draft.sketch));
   }
 
-  /** Says at the top of every view when a draft is played. */
-  setStatus({ status: { preview } }) {
+  /** Says at the foot of every view when a draft is played. */
+  setStatus({ status: { preview, state } }) {
+    this.#isPaused = state === "paused";
+    if (this.#saved !== null) this.#tellSaved(this.#saved);
     if (preview === this.#previewed) return;
     this.#previewed = preview;
     const notice = document.getElementById("preview-notice");
     const sentence = "What you changed is in play, and not saved yet.";
-    notice.replaceChildren(...(preview ? [el("span", { text: `◐ ${sentence}` }), button("Play what is saved", () => this.preview.end())] : []));
+    const ends = [button("Save", () => this.#save(), { class: "main primary" }), button("Drop what I changed", () => this.#revert(), { class: "main" })];
+    notice.replaceChildren(...(preview ? [el("span", { text: `◐ ${sentence}` }), ...ends] : []));
     announce(preview ? sentence : "The saved profile is played.");
   }
 }

@@ -24,11 +24,6 @@ export class Preview {
     else if (this.draft.valid) this.#want(this.draft.text);
   }
 
-  /** Goes back to the file until the next change. */
-  end() {
-    this.#want(null);
-  }
-
   /** The connection was lost, and with it the preview; it begins anew. */
   again() {
     this.#sent = null;

@@ -1,11 +1,15 @@
 // The history of a profile; and what is done with it as a whole: duplicate, rename, delete, export, import.
 
 import { announce } from "../common/announce.js";
+import { ask } from "../common/ask.js";
 import { get, post, request, withToken } from "../link/api.js";
 import { button, el, say } from "../common/dom.js";
+import { capital } from "../common/words.js";
 import { askName, readProfile, writeProfile } from "./saving.js";
-import { undoing } from "./undo_save.js";
+import { undone } from "./undo_save.js";
 
+/** More phrases than this are counted. */
+const TOLD_MAX = 6;
 const DAY = new Intl.DateTimeFormat(undefined, { dateStyle: "medium" });
 const TIME = new Intl.DateTimeFormat(undefined, { timeStyle: "short" });
 
@@ -25,29 +29,29 @@ export class ProfileHistory {
   /**
    * @param {object} editor
    * @param {(text: string, sentence: string) => void} editor.draft shows a text as a draft
-   * @param {(changes: import("./draft.js").Change[], sentence: string) => void} editor.change changes values of the draft
-   * @param {() => object} editor.document what the draft says
+   * @param {(text: string, sentence: string) => void} editor.draftUnplayed the same, and does not play it
+   * @param {() => string} editor.text of the draft
    * @param {(name: string) => Promise<void>} editor.open opens a profile, once its draft may be dropped
    * @param {() => Promise<boolean>} editor.mayDrop whether a draft may be dropped
    */
   constructor(editor) {
     this.editor = editor;
-    this.message = el("p", { class: "editor-message", role: "status" });
+    this.message = el("p", { class: "editor-message" });
     this.undo = el("p", {});
+    this.answer = el("div", { class: "answer" }, this.message, this.undo);
     this.history = el("ol", { class: "history" });
     this.saves = el("h4", { tabindex: "-1", text: "What was saved, and when" });
-    this.rename = button("Rename …", () => this.#rename(), { id: "rename", class: "main" });
-    this.remove = button("Delete", () => this.#delete(), { id: "delete", class: "main" });
+    this.rename = button("Rename …", ({ target }) => this.#rename(target), { id: "rename", class: "main" });
+    this.remove = button("Delete", ({ target }) => this.#delete(target), { id: "delete", class: "main" });
     this.decoder = el("select", { id: "export-decoder", class: "main", onchange: () => this.#showExport() });
     this.decoderLabel = el("label", { class: "chooser", hidden: true }, "Decoder that goes along ", this.decoder);
-    this.export = el("a", { class: "action", id: "export", download: "", text: "Export to a file", onclick: () => this.#exported() });
+    this.export = el("a", { class: "action", id: "export", download: "", text: "Export to a file", onclick: ({ target }) => this.#answerAt(target, this.#exported()) });
     this.file = el("input", { type: "file", id: "import", hidden: true, accept: ".tactpad,application/json", onchange: () => this.#import() });
-    this.node = el("div", { class: "card" }, el("h3", { text: "History and files" }), this.message, this.undo,
-      this.saves, this.history,
+    this.node = el("div", { class: "card" }, el("h3", { text: "History and files" }), this.answer, this.saves, this.history,
       el("h4", { text: "To another machine, and back" }),
       el("div", { class: "commands" }, this.export, this.decoderLabel, button("Import from a file …", () => this.file.click(), { id: "choose-import", class: "main" }), this.file),
       el("h4", { text: "This profile" }),
-      el("div", { class: "commands" }, button("Duplicate …", () => this.#duplicate(), { id: "duplicate", class: "main" }), this.rename, this.remove));
+      el("div", { class: "commands" }, button("Duplicate …", ({ target }) => this.#duplicate(target), { id: "duplicate", class: "main" }), this.rename, this.remove));
   }
 
   /** Goes to the list of saves. */
@@ -66,9 +70,8 @@ export class ProfileHistory {
     this.#showExport();
     const { saves } = await get(place(name, "/history"));
     const rows = saves.map((save, index) => {
-      const path = `/history/${save.id}`;
       const before = index + 1 < saves.length ? `/history/${saves[index + 1].id}` : "/history/shipped";
-      return this.#row(moment(save.at_ms), changesOf(save), path, own && save.changes.length > 0 ? before : null);
+      return this.#row(moment(save.at_ms), changesOf(save), `/history/${save.id}`, own && save.changes.length > 0 ? { before, later: saves.slice(0, index).reverse() } : null);
     });
     if (shipped && own) rows.push(this.#row("as shipped", "the profile inside the program", "/history/shipped", null));
     this.history.replaceChildren(...(rows.length === 0 ? [el("li", { class: "quiet", text: "None yet: the first save begins them." })] : rows));
@@ -89,40 +92,66 @@ export class ProfileHistory {
     this.export.download = `${name}.tactpad`;
   }
 
+  /** What to do with the file that the browser gets. */
   #exported() {
-    const sentence = `${this.export.download} is downloaded, with what is saved: on the other machine choose “Import from a file …” here.`;
-    this.#tell(sentence);
-    announce(sentence);
+    const sentence = `${this.export.download} is downloaded, with what is saved: on the other machine choose “Import from a file …” at the end of the page Profile.`;
+    return sentence;
   }
 
-  /** A save; `before` is where the text before it is, if it can be undone. */
-  #row(title, changes, path, before) {
+  /** Exports what is saved; says what to do with it. */
+  exportNow() {
+    el("a", { href: this.export.href, download: this.export.download }).click();
+    return this.#exported();
+  }
+
+  /** From now on answers stand below the row of this button. */
+  #answerAt(button, sentence = "") {
+    button.closest(".commands").after(this.answer);
+    this.#tell(sentence);
+  }
+
+  /** A save; `around` says where the text before it is, and which saves came later, if it can be undone. */
+  #row(title, changes, path, around) {
     const { name } = this.#profile;
-    const undo = button("Undo this", () => this.#do(() => this.#undoSave(title, path, before)), { "aria-label": `Undo this: what was saved ${title}` });
-    const open = button("Open as it was then", () => this.#do(async () => {
+    const undo = button("Undo this", ({ target }) => this.#do(target, () => this.#undoSave(title, path, around)), { "aria-label": `Undo this: what was saved ${title}` });
+    const open = button("Open as it was then", ({ target }) => this.#do(target, async () => {
       const { text } = await get(place(name, path));
       this.editor.draft(text, `${name} is in the editor as it was after ${title}, without what was changed later: Save keeps it, Undo goes back.`);
     }), { "aria-label": `Open as it was then: ${title}` });
-    return el("li", {}, el("span", {}, el("strong", { text: title }), " ", el("span", { class: "quiet", text: changes })), el("span", { class: "commands" }, before === null ? null : undo, open));
+    return el("li", {}, el("span", {}, el("strong", { text: title }), " ", el("span", { class: "quiet", text: changes })), el("span", { class: "commands" }, around === null ? null : undo, open));
   }
 
-  async #undoSave(title, path, before) {
+  async #undoSave(title, path, { before, later }) {
     const { name } = this.#profile;
-    const texts = await Promise.all([before, path].map((one) => get(place(name, one))));
-    const [was, became] = await Promise.all(texts.map(({ text }) => post("/api/draft", { text, changes: [] })));
-    const changes = undoing(was.document, became.document, this.editor.document());
-    if (changes === null) return this.editor.draft(texts[0].text, `${name} is in the editor as it was before ${title}: Save keeps it, Undo goes back.`);
-    if (changes.length === 0) return this.#tell("Nothing is left of it to undo: it was changed once more since.");
-    this.editor.change(changes, `What was saved ${title} is undone in the editor: Save keeps it, Undo goes back.`);
+    const paths = [before, path, ...later.map(({ id }) => `/history/${id}`)];
+    const saved = await Promise.all(paths.map((one) => get(place(name, one))));
+    const texts = [...saved.map(({ text }) => text), this.editor.text()];
+    const undo = await undone(texts);
+    if (undo === null) return this.#offerWhole(title, texts[0], later);
+    const stays = inShort(undo.stays).map((what) => `${capital(what)}.`).join(" ");
+    if (undo.done.length === 0) return this.#tell(`Nothing is left of it to undo. ${stays}`.trimEnd());
+    this.editor.draft(undo.text, `Undone: ${inShort(undo.done).join("; ")}. Save keeps it, Undo goes back. ${stays}`.trimEnd());
+  }
+
+  /** The whole older profile, if a person wants that, is not played by itself. */
+  async #offerWhole(title, text, later) {
+    const { name } = this.#profile;
+    const gone = later.map((save) => `${moment(save.at_ms)}: ${changesOf(save)}`);
+    const body = el("div", {}, el("p", { text: "Only the whole profile can be opened as it was before. With it goes what was changed later:" }),
+      el("ul", {}, ...[...gone, "what is not saved yet"].map((text) => el("li", { text }))));
+    if (await ask("This cannot be undone by itself", body, [{ label: "Open the older profile", answer: () => true }]) === null) return;
+    this.editor.draftUnplayed(text, `${name} is in the editor as it was before ${title}. It is not played before you tick “Play changes at once”. Save keeps it, Undo goes back.`);
   }
 
   #tell(sentence, ...more) {
     say(this.message, sentence);
+    if (sentence !== "") announce(sentence);
     this.undo.replaceChildren(...more);
   }
 
-  /** Does something that may be refused, which is told. */
-  async #do(work) {
+  /** Does something for a button that may be refused, which is told there. */
+  async #do(button, work) {
+    this.#answerAt(button);
     try {
       await work();
     } catch (error) {
@@ -130,8 +159,8 @@ export class ProfileHistory {
     }
   }
 
-  #duplicate() {
-    return this.#do(async () => {
+  #duplicate(button) {
+    return this.#do(button, async () => {
       const { name } = this.#profile;
       const to = await askName(`${name}-2`, "Duplicate …");
       if (to === null || !(await this.editor.mayDrop())) return;
@@ -141,8 +170,8 @@ export class ProfileHistory {
     });
   }
 
-  #rename() {
-    return this.#do(async () => {
+  #rename(button) {
+    return this.#do(button, async () => {
       const { name } = this.#profile;
       const to = await askName(name, "Rename …");
       if (to === null || to === name || !(await this.editor.mayDrop())) return;
@@ -152,27 +181,26 @@ export class ProfileHistory {
     });
   }
 
-  #delete() {
-    return this.#do(async () => {
+  #delete(asked) {
+    return this.#do(asked, async () => {
       const { name, shipped } = this.#profile;
       if (!(await this.editor.mayDrop())) return;
       const { text } = await readProfile(name);
       await request("DELETE", place(name));
       await this.editor.open(shipped ? name : null);
       const sentence = `${name} is deleted${shipped ? ": the shipped one is here" : ""}.`;
-      const undo = button("Bring it back", () => this.#do(async () => {
+      const undo = button("Bring it back", () => this.#do(asked, async () => {
         await writeProfile(name, text, null);
         await this.editor.open(name);
         this.#tell(`${name} is back.`);
       }), { id: "undelete", class: "main" });
       this.#tell(sentence, undo);
-      announce(sentence);
       undo.focus();
     });
   }
 
   #import() {
-    return this.#do(async () => {
+    return this.#do(this.export, async () => {
       const document = await this.file.files[0].text();
       this.file.value = "";
       if (!(await this.editor.mayDrop())) return;
@@ -183,6 +211,11 @@ export class ProfileHistory {
       this.#tell(`${name} is imported.${decoder === null ? "" : ` Its decoder is ${decoder}: tactpad run --decoder takes it.`}`);
     });
   }
+}
+
+/** Few enough to be read. */
+function inShort(phrases) {
+  return phrases.length <= TOLD_MAX ? phrases : [...phrases.slice(0, TOLD_MAX), `and ${phrases.length - TOLD_MAX} more`];
 }
 
 /** What a save changed. */

@@ -1,36 +1,181 @@
 // Undoes what one save changed, and leaves alone what came before and after it.
 
-/** All values of a document by their places: `["button",0,"press_n"]`. @returns {Map<string, any>} */
+import { post } from "../link/api.js";
+import { pathInWords, valueInWords } from "../common/words.js";
+import { withTableBack, withoutTable } from "../fields/templates.js";
+
+/** What tells tables of a list apart: without it alike, they are the same only if more than half of the rest is. */
+const TELLING = ["force", "name", "stick", "trigger"];
+
+/** All values of a table by their places: `["out","label"]`. @returns {Map<string, any>} */
 function leaves(value, path = [], into = new Map()) {
   if (value !== null && typeof value === "object") for (const [key, inner] of Object.entries(value)) leaves(inner, [...path, Array.isArray(value) ? Number(key) : key], into);
-  else into.set(JSON.stringify(path), value);
+  else if (value !== undefined) into.set(JSON.stringify(path), value);
   return into;
 }
 
-/** How many tables each list has. */
-const shape = (document) => JSON.stringify(Object.entries(document).filter(([, value]) => Array.isArray(value)).map(([key, value]) => [key, value.length]).sort());
+const isAlike = (one, other) => {
+  const [ones, others] = [leaves(one), leaves(other)];
+  return ones.size === others.size && [...ones].every(([place, value]) => others.get(place) === value);
+};
 
-/**
- * What to change in a document so that a save is undone; null where tables came or went since, so that numbers no longer name the same.
- * @param {object} before the save @param {object} after it @param {object} present
- * @returns {import("./draft.js").Change[] | null}
- */
-export function undoing(before, after, present) {
-  if (new Set([before, after, present].map(shape)).size > 1) return null;
-  const [was, became, is] = [before, after, present].map((document) => leaves(document));
-  const places = [...new Set([...was.keys(), ...became.keys()])];
-  // What was changed once more since stays.
-  const changes = places.filter((place) => was.get(place) !== became.get(place) && is.get(place) === became.get(place)).map((place) => {
-    const path = JSON.parse(place);
-    return was.has(place) ? changeOf(path, was.get(place)) : changeOf(path.slice(0, missing(before, path)), null);
-  });
-  return [...new Map(changes.map((change) => [JSON.stringify(change), change])).values()];
+/** How many values two tables share; 0 if they are two different ones. */
+function shared(one, other) {
+  const [ones, others] = [leaves(one), leaves(other)];
+  const same = [...ones].filter(([place, value]) => others.get(place) === value).length;
+  const differs = TELLING.some((key) => one[key] !== other[key]);
+  return 2 * same >= Math.min(ones.size, others.size) + (differs ? 1 : 0) ? same : 0;
 }
 
-const changeOf = (path, value) => ({ table: path.slice(0, -1), key: path.at(-1), value });
+/** What each table of a list is in the next list: its number there, or undefined. Most values alike, in order. */
+function matched(from, to) {
+  const best = Array.from({ length: from.length + 1 }, () => new Array(to.length + 1).fill(0));
+  const pair = (one, other) => shared(from[one], to[other]);
+  for (let one = from.length - 1; one >= 0; one -= 1) {
+    for (let other = to.length - 1; other >= 0; other -= 1) {
+      const both = pair(one, other);
+      best[one][other] = Math.max(best[one + 1][other], best[one][other + 1], both === 0 ? 0 : both + best[one + 1][other + 1]);
+    }
+  }
+  const found = from.map(() => undefined);
+  for (let one = 0, other = 0; one < from.length && other < to.length;) {
+    const both = pair(one, other);
+    if (both > 0 && best[one][other] === both + best[one + 1][other + 1]) found[one++] = other++;
+    else if (best[one][other] === best[one + 1][other]) one += 1;
+    else other += 1;
+  }
+  return found;
+}
 
-/** How much of a path there is to name the first table, or key, that a document lacks. */
-function missing(document, path) {
-  let inner = document;
-  return 1 + path.findIndex((part) => (inner = inner[part]) === undefined);
+/** What each table of the first list is in the last one, from save to save. */
+function followed([first, ...others]) {
+  let [before, now] = [first, first.map((_, index) => index)];
+  for (const list of others) {
+    const next = matched(before, list);
+    now = now.map((at) => next[at]);
+    before = list;
+  }
+  return now;
+}
+
+/** What is to be done to a document so that a save is undone; `document` is what comes of it. */
+class Undoing {
+  /** @type {import("./draft.js").Change[]} values, by the numbers that tables have before any comes or goes */
+  changes = [];
+  /** Tables that come back from the older text (`from` is their number there) or go, the last place first. @type {{ key: string, at: number, from?: number }[]} */
+  tables = [];
+  /** What is as it was again, and what stays, in words. @type {string[]} */
+  done = [];
+  stays = [];
+
+  /** @param {object} before the save @param {object} after it @param {object[]} later documents, the present one last */
+  constructor(before, after, later) {
+    this.document = structuredClone(later.at(-1));
+    const all = [before, after, ...later];
+    for (const key of new Set([...Object.keys(before), ...Object.keys(after)])) {
+      if (all.some((document) => Array.isArray(document[key]))) this.#list(key, all.map((document) => document[key] ?? []));
+      else this.#one(key, before[key], after[key]);
+    }
+    this.#moveTables(before);
+  }
+
+  #one(key, before, after) {
+    const gone = typeof before === "object" && after === undefined;
+    if (gone && this.document[key] === undefined) this.#back(key, before, { at: 0, from: 0 });
+    else this.#values([key], before, after, this.document[key]);
+  }
+
+  #list(key, [before, after, ...later]) {
+    const became = matched(before, after);
+    const now = followed([after, ...later]);
+    const isAt = (index) => now[became[index]];
+    before.forEach((one, index) => {
+      if (became[index] === undefined) {
+        const ahead = before.slice(0, index).map((_, other) => isAt(other)).findLast((at) => at !== undefined);
+        this.#back(key, one, { at: ahead === undefined ? 0 : ahead + 1, from: index });
+      } else if (!isAlike(one, after[became[index]])) {
+        if (isAt(index) === undefined) this.stays.push(`${tableInWords(key, became[index], after[became[index]])} is there no more`);
+        else this.#values([key, isAt(index)], one, after[became[index]], later.at(-1)[isAt(index)]);
+      }
+    });
+    after.forEach((one, index) => {
+      const at = now[index];
+      if (became.includes(index) || at === undefined) return;
+      const words = tableInWords(key, at, one);
+      if (!isAlike(one, later.at(-1)[at])) return this.stays.push(`${words} was changed since`);
+      this.tables.push({ key, at });
+      this.done.push(`${words} is gone again`);
+    });
+  }
+
+  #back(key, one, { at, from }) {
+    this.tables.push({ key, at, from });
+    this.done.push(`${tableInWords(key, this.document[key] === undefined ? null : at, one)} is back`);
+  }
+
+  /** Values of a table at `path`; what was changed once more since stays. */
+  #values(path, before, after, present) {
+    const [was, became, is] = [before, after, present].map((table) => leaves(table));
+    for (const place of new Set([...was.keys(), ...became.keys()])) {
+      const [old, now, full] = [was.get(place), is.get(place), [...path, ...JSON.parse(place)]];
+      if (old === became.get(place) || old === now) continue;
+      if (now === became.get(place)) this.#write(full, now, old, before, path.length);
+      else this.stays.push(`${pathInWords(full)} was changed once more since`);
+    }
+  }
+
+  /** A table that is left empty, and was not there before, goes too. */
+  #write(path, now, value, before, depth) {
+    this.done.push(value === undefined ? `${pathInWords(path)} (${valueInWords(path, now)}) is gone again` : `${pathInWords(path)} is ${valueInWords(path, value)} again`);
+    this.#set(path, value);
+    for (let end = path.length - 1; value === undefined && end >= depth; end -= 1) {
+      const [table, older] = [at(this.document, path.slice(0, end)), at(before, path.slice(depth, end))];
+      if (older === undefined && Object.keys(table).length === 0) this.#set(path.slice(0, end), undefined);
+    }
+  }
+
+  #set(path, value) {
+    const [table, key] = [path.slice(0, -1), path.at(-1)];
+    this.changes.push({ table, key, value: value ?? null });
+    let inner = this.document;
+    for (const part of table) inner = inner[part] ??= {};
+    if (value === undefined) delete inner[key];
+    else inner[key] = value;
+  }
+
+  /** From the last place to the first, so that no number becomes another's; at one place what goes is first. */
+  #moveTables(before) {
+    this.tables.sort((one, other) => other.at - one.at || (other.from ?? Infinity) - (one.from ?? Infinity));
+    for (const { key, at, from } of this.tables) {
+      if (from !== undefined && !Array.isArray(before[key])) this.document[key] = before[key];
+      else (this.document[key] ??= []).splice(at, from === undefined ? 1 : 0, ...(from === undefined ? [] : [before[key][from]]));
+      if (this.document[key].length === 0) delete this.document[key];
+    }
+  }
+}
+
+const at = (document, path) => path.reduce((inner, part) => inner?.[part], document);
+
+/** "button 2, pause" */
+function tableInWords(key, index, one) {
+  const name = one.name ?? [...leaves(one)].find(([place]) => place.endsWith('"label"]'))?.[1];
+  return `${pathInWords(Number.isInteger(index) ? [key, index] : [key])}${name === undefined ? "" : `, ${name},`}`;
+}
+
+const read = (text, changes = []) => post("/api/draft", { text, changes });
+
+/**
+ * Undoes a save in a text.
+ * @param {string[]} texts before the save, after it, after each later one, and the present one
+ * @returns {Promise<{ text: string, done: string[], stays: string[] } | null>} null where only the whole older text would do
+ */
+export async function undone(texts) {
+  const documents = (await Promise.all(texts.map((text) => read(text)))).map(({ document }) => document);
+  if (documents.includes(null)) return null;
+  const [before, after, ...later] = documents;
+  const { changes, tables, done, stays, document } = new Undoing(before, after, later);
+  let { text } = await read(texts.at(-1), changes);
+  for (const { key, at, from } of tables) text = from === undefined ? withoutTable(text, key, at) : withTableBack(text, key, at, texts[0], from);
+  // Whoever wrote the text may have written it in a way that is not known here.
+  return isAlike((await read(text)).document, document) ? { text, done, stays } : null;
 }

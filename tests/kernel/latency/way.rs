@@ -203,9 +203,9 @@ impl Source {
             Self::Touchpad(device) => {
                 let begun_ns = monotonic_ns();
                 if held {
-                    device.touch(0.75, 0.5, 1.0)
+                    device.touch(0.75, 0.5, 1.0);
                 } else {
-                    device.lift()
+                    device.lift();
                 }
                 begun_ns
             }

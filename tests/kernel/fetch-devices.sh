@@ -8,8 +8,9 @@
 # Needs: apt-get install debian-archive-keyring tar
 set -eu
 
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/own-lists.sh"
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/tactpad
-keyring=/usr/share/keyrings/debian-archive-keyring.gpg
 # Pressure pads are among them since then.
 oldest=1.30
 
@@ -19,37 +20,17 @@ for program in apt-get apt-cache dpkg tar; do
         exit 1
     }
 done
-[ -f "$keyring" ] || {
-    echo "$keyring is missing: apt-get install debian-archive-keyring" >&2
-    exit 1
-}
-
-# The mirror that this machine uses anyway.
-mirror=$(apt-get indextargets --format '$(REPO_URI) $(ORIGIN)' 'Created-By: Packages' |
-    awk '$2 == "Debian" && $1 !~ /security/ { print $1; exit }')
-[ -n "$mirror" ] || {
-    echo "apt knows no mirror of Debian: apt-get update" >&2
-    exit 1
-}
-
 work=$(mktemp -d "${TMPDIR:-/tmp}/fetch-devices.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-mkdir -p state/lists/partial cache/archives/partial
-for suite in stable unstable; do
-    echo "deb-src [signed-by=$keyring] $mirror $suite main" >>sources.list
-done
-# Lists and state of our own: the machine's stay as they are.
-ours="-o Dir::Etc::sourcelist=$work/sources.list -o Dir::Etc::sourceparts=- -o Dir::State=$work/state -o Dir::Cache=$work/cache
-    -o APT::Sandbox::User="
-apt-get $ours update -qq
-version=$(apt-cache $ours showsrc libinput | sed -n 's/^Version: //p' | sort -V | tail -n 1)
+own_lists "$work" "deb-src stable" "deb-src unstable"
+version=$(apt-cache $own showsrc libinput | sed -n 's/^Version: //p' | sort -V | tail -n 1)
 dpkg --compare-versions "${version:-0}" ge "$oldest" || {
     echo "libinput ${version:-} is too old: $oldest is needed" >&2
     exit 1
 }
 echo "downloading the source of libinput $version"
-apt-get $ours source -qq --download-only "libinput=$version"
+apt-get $own source -qq --download-only "libinput=$version"
 
 target=$cache/libinput-${version%-*}
 mkdir unfinished

@@ -66,19 +66,19 @@ pub(crate) fn in_guest(name: &str, body: impl FnOnce()) {
     run(Time::Virtual, name, body);
 }
 
-/// The same in real time.
-pub(crate) fn in_guest_in_real_time(name: &str, body: impl FnOnce()) {
-    run(Time::Real, name, body);
+/// The same in real time. What the guest printed, on the host and if this machine has a kernel.
+pub(crate) fn in_guest_in_real_time(name: &str, body: impl FnOnce()) -> Option<String> {
+    run(Time::Real, name, body)
 }
 
-fn run(time: Time, name: &str, body: impl FnOnce()) {
+fn run(time: Time, name: &str, body: impl FnOnce()) -> Option<String> {
     if inside() {
         let _watch = StallWatch::start();
         body();
         println!("{BODY_DONE}");
-        return;
+        return None;
     }
-    let Some(kernel) = usable_kernel() else { return };
+    let kernel = usable_kernel()?;
     let processor = next_processor();
     let lock = File::create(scratch().join(format!("guest-{processor}.lock"))).expect("a lock file");
     lock.lock().expect("the guest's turn");
@@ -90,7 +90,7 @@ fn run(time: Time, name: &str, body: impl FnOnce()) {
         println!("{}", said.trim_end().trim_end_matches("reboot: Power down"));
         let exit_code = fs::read_to_string(root.path().join("exit-code")).unwrap_or_default();
         if exit_code.trim() == "0" && said.contains(BODY_DONE) {
-            return;
+            return Some(said);
         }
         // A machine that stood still looks to the bridge like a pad that fell silent: that run says nothing.
         if again > 0 && longest_stall_ms(&said) >= STALL_MS {
@@ -104,6 +104,7 @@ fn run(time: Time, name: &str, body: impl FnOnce()) {
             String::from_utf8_lossy(&output.stderr)
         );
     }
+    None
 }
 
 /// The kernel, if this machine has all that a guest needs.
@@ -197,6 +198,27 @@ pub(crate) fn inside() -> bool {
 /// A directory that host and guest see under the same path; the guest's writes to it stay in the guest.
 pub(crate) fn scratch() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR"))
+}
+
+/// Where the host has what the scripts beside this file fetch.
+pub(crate) fn cache() -> Option<PathBuf> {
+    let home = PathBuf::from(env::var_os("HOME")?);
+    let cache = env::var_os("XDG_CACHE_HOME").map_or_else(|| home.join(".cache"), PathBuf::from);
+    Some(cache.join("tactpad"))
+}
+
+/// The folder that `find` finds on the host. The guest has another home, so the host leaves word where it is, by `name`.
+pub(crate) fn host_folder(name: &str, find: impl FnOnce() -> Option<PathBuf>) -> Option<PathBuf> {
+    let word = scratch().join(name);
+    if inside() {
+        return fs::read_to_string(word).ok().map(PathBuf::from);
+    }
+    let folder = find()?;
+    // Two tests may leave it at the same time.
+    let unfinished = scratch().join(format!("{name}.{:?}", thread::current().id()));
+    fs::write(&unfinished, folder.to_str()?).expect("a word");
+    fs::rename(unfinished, word).expect("a word in its place");
+    Some(folder)
 }
 
 fn kernel() -> PathBuf {

@@ -30,6 +30,8 @@ mod owned_pads;
 mod pad;
 mod playing;
 mod program;
+#[path = "../support/proof.rs"]
+mod proof;
 mod reader;
 mod real_pads;
 mod scene;
@@ -328,9 +330,21 @@ fn an_edge_waits_for_nothing() {
 }
 
 #[test]
-#[ignore = "proof: how much work a bridge is compared with an echo, which only a quiet machine tells"]
-fn latency_is_at_most_twice_an_echo() {
+#[ignore = "proof: from a frame or an event to the event that comes of it, beside echoes and other programs, which only a quiet machine tells"]
+fn latency_is_at_most_twice_an_echos_and_not_behind_kanatas() {
+    latency("latency_is_at_most_twice_an_echos_and_not_behind_kanatas", &latency::report::REACHED);
+}
+
+#[test]
+#[ignore = "proof: misses 1.3 times an echo, is not always before xremap, and under a load one edge in a hundred waits for a tick: goals for latency"]
+fn latency_is_near_an_echos_under_a_load_too() {
+    latency("latency_is_near_an_echos_under_a_load_too", &latency::report::WANTED);
+}
+
+fn latency(test: &str, goals: &[latency::report::Goal]) {
     if program::compiled("echo", &[]) {
-        in_guest_in_real_time("latency_is_at_most_twice_an_echo", latency::against_an_echo);
+        latency::peers::tell_if_missing();
+        let said = in_guest_in_real_time(test, latency::measure);
+        said.iter().for_each(|said| latency::report::judge(said, goals));
     }
 }

@@ -98,7 +98,13 @@ impl Reader {
 
 /// The node of the one device that has `key`.
 pub(crate) fn find(key: KeyCode) -> Option<PathBuf> {
+    find_besides(key, None)
+}
+
+/// The node of the one device that has `key`, without that at `besides`.
+pub(crate) fn find_besides(key: KeyCode, besides: Option<&Path>) -> Option<PathBuf> {
     let mut nodes = enumerate()
+        .filter(|(node, _)| Some(node.as_path()) != besides)
         .filter(|(_, device)| device.supported_keys().is_some_and(|keys| keys.contains(key)))
         .map(|(node, _)| node);
     let node = nodes.next();

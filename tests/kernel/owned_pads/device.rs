@@ -19,10 +19,10 @@ pub(super) const PEN: [AbsoluteAxisCode; 3] =
 
 /// What a device tells of itself.
 #[derive(Clone, Copy)]
-pub(super) struct Shape {
+pub(crate) struct Shape {
     pub(super) name: &'static str,
     /// The description that must fit.
-    pub(super) source: &'static str,
+    pub(crate) source: &'static str,
     /// Minimum, maximum and resolution of x, y and the pressure.
     pub(super) ranges: [(i32, i32, i32); 3],
     /// The pressure that is 1 N for a profile.
@@ -30,7 +30,7 @@ pub(super) struct Shape {
 }
 
 /// Axes as such devices have them: two tablets, two touchpads, one of which says what its numbers weigh, and a trackpad.
-pub(super) const SHAPES: [Shape; 5] = [
+pub(crate) const SHAPES: [Shape; 5] = [
     Shape {
         name: "Tablet 250 mm Pen",
         source: "tablet",
@@ -64,15 +64,22 @@ pub(super) const SHAPES: [Shape; 5] = [
 ];
 
 /// A device of software.
-pub(super) struct Device {
-    pub(super) shape: Shape,
+pub(crate) struct Device {
+    pub(crate) shape: Shape,
     device: VirtualDevice,
     pub(super) node: PathBuf,
     tracking_id: i32,
 }
 
+/// The node of a device that was made just now.
+pub(crate) fn node(device: &mut VirtualDevice) -> PathBuf {
+    let mut nodes = device.enumerate_dev_nodes_blocking().expect("its nodes");
+    let is_event = |path: &PathBuf| path.to_string_lossy().contains("/event");
+    nodes.find_map(|node| node.ok().filter(is_event)).expect("its event node")
+}
+
 impl Device {
-    pub(super) fn plug_in(shape: Shape) -> Self {
+    pub(crate) fn plug_in(shape: Shape) -> Self {
         let is_pen = shape.source == "tablet";
         let axes = if is_pen { PEN } else { MT };
         let mut keys = AttributeSet::<KeyCode>::new();
@@ -102,10 +109,7 @@ impl Device {
             builder.build()
         };
         let mut device = built().expect("a device by uinput");
-        let mut nodes = device.enumerate_dev_nodes_blocking().expect("its nodes");
-        let is_event = |path: &PathBuf| path.to_string_lossy().contains("/event");
-        let node = nodes.find_map(|node| node.ok().filter(is_event)).expect("its event node");
-        drop(nodes);
+        let node = node(&mut device);
         Self { shape, device, node, tracking_id: 0 }
     }
 
@@ -120,7 +124,7 @@ impl Device {
     }
 
     /// Something touches it at shares of its width and height, with a force for the profile in N.
-    pub(super) fn touch(&mut self, x_share: f64, y_share: f64, fz_n: f64) {
+    pub(crate) fn touch(&mut self, x_share: f64, y_share: f64, fz_n: f64) {
         let axes = if self.is_pen() { PEN } else { MT };
         let at = |k: usize, share: f64| {
             let (minimum, maximum, _) = self.shape.ranges[k];
@@ -171,7 +175,7 @@ impl Device {
         ]);
     }
 
-    pub(super) fn lift(&mut self) {
+    pub(crate) fn lift(&mut self) {
         if self.is_pen() {
             let pressure = AbsoluteAxisCode::ABS_PRESSURE.0;
             self.emit(&[(EventType::ABSOLUTE, pressure, 0), (EventType::KEY, KeyCode::BTN_TOUCH.0, 0)]);

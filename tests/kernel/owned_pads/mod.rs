@@ -1,7 +1,7 @@
 //! Pads that people own, on a real input stack: devices of software with the axes and ranges of such pads, and strokes of ours.
 
 pub(crate) mod channels;
-mod device;
+pub(crate) mod device;
 pub(crate) mod grab;
 pub(crate) mod histories;
 pub(crate) mod playing;

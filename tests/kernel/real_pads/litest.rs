@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use crate::guest::{inside, scratch};
+use crate::guest::{cache, host_folder};
 
 use evdev::{
     AbsInfo, AbsoluteAxisCode, BusType, EventType, InputId, KeyCode, MiscCode, PropType, RelativeAxisCode,
@@ -43,24 +43,13 @@ pub(crate) struct RealDevice {
     pub(crate) reports: BTreeMap<String, Vec<Told>>,
 }
 
-/// The newest sources that were fetched; `None` without any. The guest has another home, so the host leaves word where they are.
+/// The newest sources that were fetched; `None` without any.
 pub(crate) fn folder() -> Option<PathBuf> {
-    let word = scratch().join("libinput");
-    if inside() {
-        return fs::read_to_string(word).ok().map(PathBuf::from);
-    }
-    let folder = fetched()?;
-    // Two tests may leave it at the same time.
-    let unfinished = scratch().join(format!("libinput.{:?}", std::thread::current().id()));
-    fs::write(&unfinished, folder.to_str()?).expect("a word");
-    fs::rename(unfinished, word).expect("a word in its place");
-    Some(folder)
+    host_folder("libinput", fetched)
 }
 
 fn fetched() -> Option<PathBuf> {
-    let home = PathBuf::from(std::env::var_os("HOME")?);
-    let cache = std::env::var_os("XDG_CACHE_HOME").map_or_else(|| home.join(".cache"), PathBuf::from);
-    let entries = fs::read_dir(cache.join("tactpad")).ok()?;
+    let entries = fs::read_dir(cache()?).ok()?;
     let found = entries.filter_map(|entry| {
         let path = entry.ok()?.path();
         let version = path.file_name()?.to_str()?.strip_prefix("libinput-")?;

@@ -442,8 +442,7 @@ fn a_number_that_falls_to_the_largest_is_an_old_frame() {
     let anew = Restart { time_us: 0, is_flagged: false, offset: 325_719, text: 2 };
     let begun = [(0, Rate(100)), (0, Mend), (0, anew), (9, Ask(Wish::Break)), (169, Event::Identify(2))];
     let looked = [(113, Event::PageStall(false)), (13, Ask(Wish::Status)), (2_572, Lift)];
-    let touched =
-        [(352, Event::ReaderStall(true)), (60, Touch(RIGHT)), (854, Lift), (905, ClockJump(0))];
+    let touched = [(352, Event::ReaderStall(true)), (60, Touch(RIGHT)), (854, Lift), (905, ClockJump(0))];
     let again =
         [(2_238, Stall(false)), (365, Touch(finger)), (10, Event::SequenceBits(8)), (62, Touch(RIGHT))];
     holds(&[&begun[..], &looked, &touched, &again].concat());

@@ -460,11 +460,11 @@ impl Look {
             is_too_slow || is_too_fast(shown_us)
         };
         let is_clock_off = is_off && shown.steady_passed_us >= STEADY_MIN_US;
-        // What is lost was sent.
-        let mean_us = passed_us as f32 / (self.lost + self.samples - 1) as f32;
+        // What is lost was sent; where samples do not go on from one another, only the pad's numbers tell how many that were.
+        let counted = self.last.sequence.wrapping_sub(self.first.sequence);
+        let mean_us = passed_us as f32 / counted.max(self.lost + self.samples - 1) as f32;
         let is_even = (self.widest_us as f32) < EVEN * mean_us;
-        // How much is lost before a clock that is set anew nobody knows.
-        let is_slow = 1e6 / mean_us < SAMPLES_PER_S_MIN && is_even && !is_set_anew;
+        let is_slow = 1e6 / mean_us < SAMPLES_PER_S_MIN && is_even;
         let percent = 100.0 * self.lost as f32 / (self.lost + self.samples) as f32;
         let still = self.has_changed.iter().position(|has_changed| !has_changed);
         let lively = self.has_changed.iter().filter(|has_changed| **has_changed).count();

@@ -73,8 +73,8 @@ pub(super) struct Judge {
     /// When it had heard none for a while.
     unheard: HostInstant,
     looked: HostInstant,
-    /// When something was found about the stream last.
-    found: Option<HostInstant>,
+    /// What was found about the stream last, and before that, and when it was so last.
+    found: [Option<(LineFinding, HostInstant)>; 2],
     /// What is found, and since when it is the same.
     stands: Option<(Subject, HostInstant)>,
     kept_since: Option<HostInstant>,
@@ -134,6 +134,12 @@ impl Judge {
             let is_recent = now.us_since(at) <= waited_us + TAKEN_BACK_US;
             (number, if is_recent { now } else { at })
         });
+    }
+
+    /// Whether something within the last `us` makes this state right. Where a zero is wanted, a finger that is read late is in its way.
+    fn explain(&self, now: HostInstant, us: u64, state: State) -> bool {
+        let is_in_the_way = state == State::Loaded && !self.is_untouched(now);
+        self.causes.explain(now, us, state) || is_in_the_way && self.causes.explain(now, us, State::Taring)
     }
 
     /// Takes what went out by now, and what was told.
@@ -215,7 +221,7 @@ impl Judge {
         // On a bad line, or by a clock in doubt, a zero takes its time.
         let is_slow = self.causes.within(now, NAMED_US).any(|cause| matches!(cause, Loss | Clock));
         let is_anew = matches!(state, State::Taring | State::Loaded) && !is_slow;
-        if is_anew && !self.causes.explain(now, ANEW_US, state) {
+        if is_anew && !self.explain(now, ANEW_US, state) {
             return broken("the zero is measured anew where something asks for it", self.words(play));
         }
         self.keep_promise(play, is_held)?;
@@ -245,7 +251,11 @@ impl Judge {
             self.kept_since.get_or_insert(now);
         }
         let finding = play.bridge.driver.pipeline.line_finding();
-        self.found = finding.map(|_| now).or(self.found);
+        if let Some(finding) = finding {
+            let [newest, before] = self.found;
+            let is_same = newest.is_some_and(|(newest, _)| subject(&newest) == subject(finding));
+            self.found = [Some((*finding, now)), if is_same { before } else { newest }];
+        }
         // It is about the stream as it was heard last.
         if self.heard.is_none_or(|heard| now.us_since(heard) > RELEASED_US) {
             self.unheard = now;
@@ -264,7 +274,7 @@ impl Judge {
     /// What is found for three seconds about a stream that is heard has its own words.
     fn is_finding_told(&mut self, play: &Play, finding: Option<&LineFinding>) -> Result<(), Broken> {
         let now = play.now;
-        let subject = finding.map(|finding| (discriminant(finding), finding.channel()));
+        let subject = finding.map(subject);
         if self.stands.is_none_or(|(before, _)| subject != Some(before)) || self.unheard == now {
             self.stands = subject.map(|subject| (subject, now));
         }
@@ -303,17 +313,23 @@ impl Judge {
         // Of a stream that is not heard any more a finding explains nothing.
         let is_heard = self.heard.is_some_and(|heard| now.us_since(heard) <= NAMED_US);
         let finding = finding.filter(|_| is_heard);
-        let is_state_right = self.causes.explain(now, NAMED_US, state);
+        let is_state_right = self.explain(now, NAMED_US, state);
         if !is_state_right && finding.is_none() {
             return broken("the status names what keeps a pad from playing", self.words(play));
         }
         let messages = play.messages.0.lock().unwrap();
         // What was found stands until it is taken back; what keeps the pad from playing then has its word in time.
-        let stood = self.found.is_some_and(|found| now.us_since(found) <= NAMED_US);
-        let lasts_us = if stood { TAKEN_BACK_US + NAMED_US } else { NAMED_US };
+        let stood: Vec<LineFinding> = self
+            .found
+            .iter()
+            .flatten()
+            .filter(|(_, at)| now.us_since(*at) <= NAMED_US)
+            .map(|(finding, _)| *finding)
+            .collect();
+        let lasts_us = if stood.is_empty() { NAMED_US } else { TAKEN_BACK_US + NAMED_US };
         let is_right = |line: &String| {
-            STATES.iter().any(|state| line == state.sentence() && self.causes.explain(now, NAMED_US, *state))
-                || finding.is_some_and(|finding| is_of_kind(line, finding))
+            STATES.iter().any(|state| line == state.sentence() && self.explain(now, NAMED_US, *state))
+                || is_heard && stood.iter().any(|finding| is_of_kind(line, finding))
                 || is_heard && self.is_found_so(now, lasts_us, line) == Some(true)
         };
         // What was told last of the pad or of its stream lasts still, or may not be told again yet.
@@ -350,7 +366,7 @@ impl Judge {
                 continue;
             }
             let state = STATES.iter().find(|state| state.sentence() == line);
-            let is_state_untrue = state.is_some_and(|state| !self.causes.explain(now, NAMED_US, *state));
+            let is_state_untrue = state.is_some_and(|state| !self.explain(now, NAMED_US, *state));
             // It is about the stream as it was heard last. A stray channel stays one until a finger shows that it is none.
             let unheard_us = self.heard.map_or(0, |heard| now.us_since(heard));
             let lasts_us = if line.contains(STRAY) { REPEAT_US } else { TAKEN_BACK_US };
@@ -416,6 +432,10 @@ const FOUND: [(&str, &[Cause]); 5] = [
 
 /// The kind of a finding, and the channel that it is about.
 type Subject = (Discriminant<LineFinding>, Option<usize>);
+
+fn subject(finding: &LineFinding) -> Subject {
+    (discriminant(finding), finding.channel())
+}
 
 /// Whether this line tells a state.
 fn is_state(line: &str) -> bool {

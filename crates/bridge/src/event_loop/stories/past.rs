@@ -485,3 +485,57 @@ fn what_a_full_terminal_did_not_take_was_not_read() {
         [(31, anew(4_294_780_715, false, 377_673)), (1_000, Touch(RIGHT)), (0, Event::SequenceBits(8))];
     holds(&[&begun[..], &first, &[(2_306, anew(18_446_744_073_708_760_834, true, 322_901))]].concat());
 }
+
+#[test]
+fn a_pad_whose_clock_stood_while_it_was_silent_is_late_for_a_second_and_not_for_ever() {
+    holds(&[
+        (0, PLUG_IN),
+        (0, Pace(1)),
+        (1, Stall(true)),
+        (1_000, Mend),
+        (0, Touch(RIGHT)),
+        (2_731, Stall(true)),
+        (688, Stall(false)),
+        (229, Lift),
+        (88, Mend),
+    ]);
+}
+
+#[test]
+fn a_machine_that_stands_still_while_the_pad_does_measures_no_zero_under_the_finger() {
+    holds(&[
+        (0, PLUG_IN),
+        (1_000, Touch(FINGER)),
+        (0, Freeze(3_000)),
+        (0, Stall(true)),
+        (1_000, Stall(false)),
+        (2_954, Lift),
+        (76, Mend),
+    ]);
+    holds(&[
+        (0, Mend),
+        (0, Touch(RIGHT)),
+        (0, Keep(true)),
+        (2_647, Keep(false)),
+        (0, Freeze(300)),
+        (1_000, Lift),
+        (0, Mend),
+    ]);
+}
+
+#[test]
+fn a_pad_whose_frames_are_damaged_while_its_clock_runs_away_is_not_slow() {
+    let restart = |time_us, offset| Restart { time_us, is_flagged: true, offset, text: 1 };
+    holds(&[
+        (0, Rate(100)),
+        (0, Mend),
+        (401, restart(11_415_596_874_167_041_261, 87_047)),
+        (275, restart(21_608_009, -187_079)),
+        (804, Off(6, Stuck)),
+        (1_110, Mend),
+        (392, DamagePermille(300)),
+        (10, Pace(20_000)),
+        (0, restart(10_719_728, -37_383)),
+        (256, Mend),
+    ]);
+}

@@ -392,9 +392,13 @@ impl World {
     /// Whether this sample goes on by number and clock from the one that was read before the pad began anew, as far as one who waited for it can know.
     fn seems_to_go_on(&self, sample: &Sample) -> bool {
         let Some((last, heard)) = self.before else { return false };
-        let passed_us = self.play.now.us_since(heard);
-        let shown_us = sample.time_us.checked_sub(last.time_us).unwrap_or(u64::MAX);
-        sample.sequence > last.sequence && shown_us.abs_diff(passed_us) <= passed_us / 32 + 100_000
+        let read_at = self.frozen_until.unwrap_or(self.play.now);
+        let passed_us = read_at.us_since(heard);
+        let waited_us = read_at.us_since(self.play.now);
+        let off_us = passed_us / 32 + 100_000;
+        let in_time_us = passed_us.saturating_sub(off_us + waited_us)..=passed_us + off_us;
+        let shown_us = sample.time_us.checked_sub(last.time_us);
+        sample.sequence > last.sequence && shown_us.is_some_and(|shown_us| in_time_us.contains(&shown_us))
     }
 
     /// The bridge reads all that is there.
@@ -486,14 +490,15 @@ impl World {
         let is_silent = self.is_stalled || self.kept.is_some();
         let is_off = self.off.iter().any(Option::is_some) || self.is_zero_old;
         let is_untouched = self.judge.causes.has_passed(now, Cause::Touched);
-        if !is_off && is_untouched && self.judge.causes.have_passed(now) {
+        let is_ghost = self.play.bridge.driver.pipeline.contact().is_some();
+        if !is_off && is_untouched && !is_ghost && self.judge.causes.have_passed(now) {
             self.was_off = [false; 9];
         }
         if phase == Phase::Taring {
             self.is_dead_at_zero =
                 self.dead_since.map(|since| since.is_some_and(|since| now.us_since(since) > DEAD_US));
         }
-        let is_several = is_off && self.was_off.iter().filter(|was_off| **was_off).count() > 1;
+        let is_several = is_off && self.were_several_off();
         let there = [
             (Cause::Unplugged, !self.is_plugged),
             (Cause::Denied, self.is_plugged && !is_open && self.port == PortState::Denied),
@@ -516,6 +521,11 @@ impl World {
                 self.judge.excuse();
             }
         }
+    }
+
+    /// Whether several channels were off since the pad was sound. What they leave behind may look like a finger in everything.
+    fn were_several_off(&self) -> bool {
+        self.was_off.iter().filter(|was_off| **was_off).count() > 1
     }
 
     /// Something is over in a moment, and the zero may be measured anew.

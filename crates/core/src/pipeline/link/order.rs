@@ -1,7 +1,7 @@
 //! How samples follow one another by number and time, and when one that does not shows that the pad began anew.
 
 use super::clock::GAP_MAX_US;
-use super::reading::Reading;
+use super::reading::{Reading, SILENCE_MAX_US};
 use crate::time::HostInstant;
 
 /// No pad samples faster than once in so many microseconds.
@@ -19,6 +19,9 @@ const PACE_OFF: u64 = 32;
 
 /// A sample with no more delay came without any.
 const DELAY_MAX_US: u64 = 20_000;
+
+/// What was late for so long is not: the pad's clock stood meanwhile, or counted something else.
+const LATE_MAX_US: u64 = 1_000_000;
 
 /// So many frames that go on from one another are a run of the pad, which began anew. One that is late or came again goes on in
 /// nothing.
@@ -49,13 +52,22 @@ pub(super) struct Run {
     pub(super) last: Reading,
     /// When a sample was heard without delay, and the pad's time then. Those that a host took late, or a pad kept, come after it.
     prompt: (HostInstant, u64),
+    /// When the last sample was heard, and for how long all that were heard have been late.
+    heard: HostInstant,
+    late_us: u64,
 }
 
 impl Run {
     /// It begins with this sample, heard at `now`.
     pub(super) const fn beginning(now: HostInstant, first: &Reading) -> Self {
-        let mut run =
-            Self { newest: [None; KEPT], first: first.sequence, last: *first, prompt: (now, first.time_us) };
+        let mut run = Self {
+            newest: [None; KEPT],
+            first: first.sequence,
+            last: *first,
+            prompt: (now, first.time_us),
+            heard: now,
+            late_us: 0,
+        };
         run.newest[Self::place(first)] = Some(*first);
         run
     }
@@ -66,8 +78,11 @@ impl Run {
 
     /// Takes its next sample, heard at `now`.
     pub(super) fn take(&mut self, now: HostInstant, next: &Reading) {
-        if !goes_on_closely(&self.last, next) || self.delay_us(now, next) <= DELAY_MAX_US {
-            self.prompt = (now, next.time_us);
+        let passed_us = now.us_since(std::mem::replace(&mut self.heard, now));
+        self.late_us += if passed_us <= SILENCE_MAX_US { passed_us } else { 0 };
+        let is_late = shown_us(self.last.time_us, next).is_some() && self.delay_us(now, next) > DELAY_MAX_US;
+        if !is_late || self.late_us > LATE_MAX_US {
+            (self.prompt, self.late_us) = ((now, next.time_us), 0);
         }
         self.newest[Self::place(next)] = Some(*next);
         self.last = *next;
@@ -95,7 +110,7 @@ impl Run {
             1 => SequenceStep::Next,
             ahead
                 if ahead <= SKIPPED_MAX && self.can_show_by(now, next)
-                    || self.goes_on_after_gap(now, next) =>
+                    || self.goes_on_after_gap(now, next, now.us_since(self.heard)) =>
             {
                 SequenceStep::Skipped(ahead - 1)
             }
@@ -111,7 +126,7 @@ impl Run {
         } else if next.status.restarted() {
             SequenceStep::Anew
         } else if goes_on_closely(&self.last, next)
-            || next.sequence != self.last.sequence && self.goes_on_after_gap(now, next)
+            || next.sequence != self.last.sequence && self.goes_on_after_gap(now, next, 0)
         {
             SequenceStep::Next
         } else {
@@ -142,15 +157,15 @@ impl Run {
         next.time_us > self.last.time_us && shown_us <= 2 * now.us_since(heard) + GAP_MAX_US
     }
 
-    /// Whether `next`, heard at `now`, can be of this run after a gap. A run that began anew shows another time than has passed, or a
+    /// Whether `next`, heard at `now` after it may have waited for so long, can be of this run after a gap. A run that began anew shows another time than has passed, or a
     /// number that is behind, or farther ahead than samples fit into that time. So does a pad that ran while the host slept, whose
     /// zero is as old as that.
-    fn goes_on_after_gap(&self, now: HostInstant, next: &Reading) -> bool {
+    fn goes_on_after_gap(&self, now: HostInstant, next: &Reading, waited_us: u64) -> bool {
         let (heard, time_us) = self.prompt;
         let passed_us = now.us_since(heard);
         let off_us = passed_us / PACE_OFF + GAP_MAX_US;
-        let is_in_time =
-            shown_us(time_us, next).is_some_and(|shown_us| shown_us.abs_diff(passed_us) <= off_us);
+        let in_time_us = passed_us.saturating_sub(off_us + waited_us)..=passed_us + off_us;
+        let is_in_time = shown_us(time_us, next).is_some_and(|shown_us| in_time_us.contains(&shown_us));
         let ahead = next.sequence.wrapping_sub(self.last.sequence);
         let missing_us = shown_us(self.last.time_us, next);
         is_in_time

@@ -143,7 +143,10 @@ impl World {
             let mut sent = self.play.sent.iter().rev();
             sent.find(|sent| sent.sequence == number).is_some_and(|sent| !sent.status.restarted())
         };
-        let are_few = age <= KNOWN as u32 || frames.min(age) < 3;
+        // What was sent before the port was opened nobody knows again.
+        let are_known =
+            age <= KNOWN as u32 && self.read.front().is_some_and(|oldest| oldest.sequence <= first);
+        let are_few = are_known || frames.min(age) < 3;
         let are_within_run = (0..frames.min(age)).all(|back| is_within_run(first.wrapping_add(back)));
         self.judge.causes.have_passed(self.play.now) && are_few && are_within_run
     }

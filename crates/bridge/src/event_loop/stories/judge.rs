@@ -10,7 +10,7 @@ use std::mem::{Discriminant, discriminant};
 use super::super::state;
 use super::super::virtual_time::Play;
 use super::cause::Cause::{
-    self, Channel, Clock, Frozen, Loss, Restarted, Silent, UnflaggedRestart, Wraps, ZeroUnderLoad,
+    self, Channel, Clock, Delayed, Frozen, Loss, Restarted, Silent, UnflaggedRestart, Wraps, ZeroUnderLoad,
 };
 use super::cause::Causes;
 use crate::state::State;
@@ -138,7 +138,8 @@ impl Judge {
 
     /// Whether something within the last `us` makes this state right. Where a zero is wanted, a finger that is read late is in its way.
     fn explain(&self, now: HostInstant, us: u64, state: State) -> bool {
-        let is_in_the_way = state == State::Loaded && !self.is_untouched(now);
+        let is_late = self.causes.within(now, GHOST_US).any(|cause| matches!(cause, Frozen | Delayed));
+        let is_in_the_way = state == State::Loaded && is_late && !self.is_untouched(now);
         self.causes.explain(now, us, state) || is_in_the_way && self.causes.explain(now, us, State::Taring)
     }
 

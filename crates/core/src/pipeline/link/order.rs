@@ -157,9 +157,9 @@ impl Run {
         next.time_us > self.last.time_us && shown_us <= 2 * now.us_since(heard) + GAP_MAX_US
     }
 
-    /// Whether `next`, heard at `now` after it may have waited for so long, can be of this run after a gap. A run that began anew shows another time than has passed, or a
-    /// number that is behind, or farther ahead than samples fit into that time. So does a pad that ran while the host slept, whose
-    /// zero is as old as that.
+    /// Whether `next`, heard at `now`, can be of this run after a gap. It may have waited for a host that stood still, µs. A run that began
+    /// anew shows another time than has passed, or a number that is behind, or farther ahead than samples fit into that time. So does a
+    /// pad that ran while the host slept, whose zero is as old as that.
     fn goes_on_after_gap(&self, now: HostInstant, next: &Reading, waited_us: u64) -> bool {
         let (heard, time_us) = self.prompt;
         let passed_us = now.us_since(heard);

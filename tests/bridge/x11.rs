@@ -414,12 +414,15 @@ fn setup_keeps_keys_where_they_are_chosen_and_run_types_them() {
     let setup = "setup --pad virtual --try no --profile tetris";
     // The second answer is to the question of permission.
     let (said, _) = tactpad(setup, "1\n\n", &server.display);
-    assert!(said.contains("sudo modprobe uinput") && said.contains("no game gets it"), "{said}");
+    assert!(said.contains("sudo modprobe uinput") && said.contains("(`tactpad doctor`):"), "{said}");
     assert!(said.ends_with("changed there.\n") && said.contains("\n  tactpad run\n"), "{said}");
     let (_, told) = tactpad("run --seconds 0.3", "", &server.display);
     assert!(told.contains("which go to the window in front: `--output x11`"), "{told}");
     let (said, _) = tactpad(setup, "2\n", &server.display);
-    assert!(said.contains("start the game first") && said.contains("\n  tactpad run --output x11\n"), "{said}");
+    assert!(
+        said.contains("start the game first") && said.contains("\n  tactpad run --output x11\n"),
+        "{said}"
+    );
     let (_, told) = tactpad("run --seconds 3", "", &server.display);
     assert!(told.contains("keys and pointer of X display") && !told.contains(" 0 downs"), "{told}");
     assert!(told.contains(", 0 held at the end"), "{told}");

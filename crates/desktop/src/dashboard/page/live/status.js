@@ -54,7 +54,7 @@ export class Status {
     this.error = el("p", { class: "bad", hidden: true });
     this.choice = el("select", { id: "profile-choice", class: "main", onchange: () => this.#choose() }, el("option", { text: "loading" }));
     this.pause = button("Pause", () => this.#pause(), { id: "pause", class: "main" });
-    document.getElementById("now").append(el("p", { class: "state" }, this.sign, this.word, this.reach), this.pause);
+    document.getElementById("now").append(el("p", { class: "state warn" }, this.sign, this.word, this.reach), this.pause);
     this.node = el("div", { class: "card status", hidden: true },
       el("h3", { class: "unseen", text: "State" }),
       this.sentence,

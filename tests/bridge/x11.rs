@@ -1,7 +1,8 @@
 //! Key presses and the pointer through a real X server, seen by an ordinary X client.
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write as _};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::channel;
 
@@ -389,4 +390,42 @@ fn two_thousand_presses_arrive_in_order_and_are_quick() {
         "a key call: p50 {p50:.0} µs, p99 {p99:.0} µs, max {max:.0} µs; a round trip: p50 {round_trip:.0} µs"
     );
     assert!(p50 <= ROUND_TRIPS_MAX * round_trip, "p50 {p50} µs; a round trip {round_trip} µs");
+}
+
+#[test]
+fn setup_keeps_keys_where_they_are_chosen_and_run_types_them() {
+    if !require("Xvfb", "apt-get install xvfb") || Path::new("/dev/uinput").exists() {
+        return;
+    }
+    let server = Server::start();
+    let home = tempfile::tempdir().unwrap();
+    let tactpad = |line: &str, answers: &str, display: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+        command.args(line.split(' ')).env("HOME", home.path()).env("XDG_RUNTIME_DIR", home.path());
+        command.env("XDG_STATE_HOME", home.path()).env("DISPLAY", display).env_remove("WAYLAND_DISPLAY");
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        child.stdin.take().unwrap().write_all(answers.as_bytes()).unwrap();
+        let output = child.wait_with_output().unwrap();
+        let [said, told] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+        assert!(output.status.success(), "{said}{told}");
+        (said, told)
+    };
+    let setup = "setup --pad virtual --try no --profile tetris";
+    // The second answer is to the question of permission.
+    let (said, _) = tactpad(setup, "1\n\n", &server.display);
+    assert!(said.contains("sudo modprobe uinput") && said.contains("(`tactpad doctor`):"), "{said}");
+    assert!(said.ends_with("changed there.\n") && said.contains("\n  tactpad run\n"), "{said}");
+    let (_, told) = tactpad("run --seconds 0.3", "", &server.display);
+    assert!(told.contains("which go to the window in front: `--output x11`"), "{told}");
+    let (said, _) = tactpad(setup, "2\n", &server.display);
+    assert!(
+        said.contains("start the game first") && said.contains("\n  tactpad run --output x11\n"),
+        "{said}"
+    );
+    let (_, told) = tactpad("run --seconds 3", "", &server.display);
+    assert!(told.contains("keys and pointer of X display") && !told.contains(" 0 downs"), "{told}");
+    assert!(told.contains(", 0 held at the end"), "{told}");
+    let (_, told) = tactpad("run --seconds 0.3", "", "");
+    assert!(told.contains("chose keys of the X server, and there is none here"), "{told}");
 }

@@ -65,6 +65,8 @@ fn a_bridge_that_went_away_is_told_and_one_that_is_paused_too() {
     let shown = Shown::start("virtual", "super-mario");
     let Some(browser) = Browser::open(&shown.url) else { return };
     browser.wait("document.getElementById('state').textContent.includes('playing')");
+    // It plays into an event log.
+    browser.wait("document.querySelector('.state.warn #reach').textContent === 'reaches no game'");
     browser.click("#pause");
     browser.wait("document.getElementById('state').textContent.includes('paused')");
     assert_eq!(shown.status()["state"], "paused");

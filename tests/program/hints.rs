@@ -90,10 +90,16 @@ fn run_without_virtual_devices_plays_into_a_log_here_unless_they_are_asked_for()
     let run = tactpad(folder.path(), "run --pad virtual --seconds 2");
     assert_eq!(run.status.code(), Some(0), "{}", said(&run));
     assert!(String::from_utf8_lossy(&run.stdout).contains("\"code\":\"ABS_HAT0X\""));
+    let told = said(&run);
     assert!(
-        said(&run).contains("Output: an event log, here. For a virtual gamepad: /dev/uinput"),
-        "{}",
-        said(&run)
+        told.contains("Output: an event log, here. For a virtual gamepad: `sudo modprobe uinput`\n"),
+        "{told}"
+    );
+    assert!(told.contains(" downs, ") && told.contains(" held at the end\n"), "{told}");
+    let doctor = tactpad(folder.path(), "doctor --json").stdout;
+    assert!(
+        String::from_utf8_lossy(&doctor).contains("\"mend\":\"sudo modprobe uinput\""),
+        "the same command"
     );
     let asked = tactpad(folder.path(), "run --pad virtual --seconds 2 --output uinput");
     assert_eq!(asked.status.code(), Some(2));

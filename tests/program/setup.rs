@@ -65,7 +65,9 @@ fn answers_over_a_pipe_lead_to_what_run_plays() {
     assert!(asked.status.success(), "{said}{}", text(&asked.stderr));
     assert!(said.contains("Answer yes or no") && said.contains("there is no profile \"99\""), "{said}");
     assert!(said.contains("\n  tactpad run\n"), "{said}");
-    assert!(plays(home.path(), "", ["serial:/dev/ttyOfMine", "Tetris"]), "and waits for it");
+    assert!(plays(home.path(), "", ["serial:/dev/ttyOfMine", "Tetris"]));
+    let waits = program(home.path(), "run --seconds 0.3 --output none").output().unwrap();
+    assert!(text(&waits.stderr).contains("waiting for the pad: plug it in"), "{}", text(&waits.stderr));
     assert!(plays(home.path(), "--pad virtual", ["virtual", "Tetris"]));
     assert!(plays(home.path(), "--profile contra", ["serial:/dev/ttyOfMine", "Contra"]));
 }
@@ -77,11 +79,31 @@ fn enter_takes_what_is_in_brackets_and_there_are_five_questions_at_most() {
     let said = text(&asked.stdout);
     assert!(asked.status.success(), "{said}{}", text(&asked.stderr));
     assert!((2..=5).contains(&questions(&said).len()), "{said}");
-    assert!(said.contains("[1]: ") && said.contains("[super-mario]: "), "{said}");
+    // A game that is installed stands before the others.
+    let is_usual = |name: &&str| said.contains(&format!("[{name}]: "));
+    let usual = ["supertux", "btanks", "vitetris", "super-mario"].into_iter().find(is_usual);
+    assert!(said.contains("[1]: ") && usual.is_some(), "{said}");
+    assert_eq!(said.contains("Games that are installed here:"), usual != Some("super-mario"), "{said}");
     let by_options = answered(home.path(), "setup --pad virtual --try no --profile contra --yes", "");
     assert!(by_options.status.success(), "{}", text(&by_options.stderr));
-    assert!(text(&by_options.stdout).contains("\n  tactpad run --pad virtual\n"));
-    assert!(plays(home.path(), "", ["auto", "Contra"]), "a pad of software is for now");
+    assert!(text(&by_options.stdout).contains("\n  tactpad run\n"));
+    assert!(plays(home.path(), "", ["virtual", "Contra"]), "a pad of software is kept, too");
+    let doctor = text(&program(home.path(), "doctor").output().unwrap().stdout);
+    assert!(doctor.contains("plays with the pad virtual, profile contra, output auto"), "{doctor}");
+}
+
+#[test]
+fn the_demo_plays_the_profile_that_was_chosen_and_says_where_it_cannot() {
+    let home = home();
+    let chosen = |name: &str| {
+        fs::create_dir_all(home.path().join("tactpad")).unwrap();
+        fs::write(home.path().join("tactpad/last-profile"), format!("{name}\n")).unwrap();
+        program(home.path(), "demo --seconds 2").output().unwrap()
+    };
+    assert!(text(&chosen("one-button").stdout).contains("The profile types keys"));
+    let gone = chosen("gone");
+    assert!(!text(&gone.stdout).contains("The profile types keys"));
+    assert!(text(&gone.stderr).contains("gone, cannot be used any more: playing super-mario"));
 }
 
 #[test]

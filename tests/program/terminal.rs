@@ -172,6 +172,15 @@ fn run_without_virtual_devices_shows_the_events_here() {
 }
 
 #[test]
+fn a_picture_without_a_pad_says_what_it_waits_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "run --pad serial:/dev/ttyOfMine --wait --output none --seconds 2 --profile contra";
+    let mut terminal = Terminal::start(folder.path(), line, "xterm", [80, 24]);
+    assert!(terminal.shows(|screen| count(screen, "waiting for the pad: plug it in") == 1));
+    assert!(terminal.finish().0.success());
+}
+
+#[test]
 fn dumb_terminals_get_no_escape_sequences() {
     let folder = tempfile::tempdir().unwrap();
     for line in

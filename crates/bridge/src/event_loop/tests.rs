@@ -20,7 +20,7 @@ fn without_pad() -> (Bridge, MessageLog, Arc<AtomicUsize>) {
         Err(PadError::NotThere("no".into()))
     }));
     let now_ns = Box::leak(Box::default());
-    (bridge(now_ns, pad, Box::new(NullSink), &messages, Vec::new()), messages, looked)
+    (bridge(now_ns, pad, Box::new(NullSink::NOWHERE), &messages, Vec::new()), messages, looked)
 }
 
 /// Lets the bridge wake when it wants to until `end`; how often it did.

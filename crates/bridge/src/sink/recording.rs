@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn edges_are_kept_steps_are_counted_and_a_hat_that_swings_over_is_an_up_and_a_down() {
-        let mut recording = RecordingSink::new(Box::new(NullSink));
+        let mut recording = RecordingSink::new(Box::new(NullSink::NOWHERE));
         let recorded = recording.recorded();
         let hat = Code::Axis(16);
         for group in [[event(hat, 1), event(Code::Relative(0), 5)], [event(hat, -1), event(hat, 0)]] {

@@ -64,7 +64,7 @@ impl UinputSink {
     /// # Errors
     /// uinput cannot be used here; the text says what would help.
     pub fn open() -> Result<Self, SinkError> {
-        available()?;
+        available().map_err(|obstacle| obstacle.error())?;
         Ok(Self::empty())
     }
 
@@ -100,10 +100,46 @@ impl UinputSink {
 /// Says whether virtual devices can be made here, without making one.
 ///
 /// # Errors
-/// They cannot; the text says what would help.
-pub fn available() -> Result<(), SinkError> {
+/// They cannot, and this keeps them from it.
+pub fn available() -> Result<(), UinputObstacle> {
     let uinput = std::fs::OpenOptions::new().read(true).write(true).open(UINPUT);
-    uinput.map(|_| ()).map_err(|error| cannot_make(&error))
+    uinput.map(|_| ()).map_err(|error| UinputObstacle::of(&error))
+}
+
+/// The command that puts the udev rules in place, which the program prints.
+pub const INSTALL_RULES: &str = "tactpad doctor --udev-rules | sudo tee /etc/udev/rules.d/70-tactpad.rules && \
+                                 sudo udevadm control --reload && sudo udevadm trigger";
+
+/// The command that loads the kernel's module. The rules' static node loads it after each start of the machine.
+const LOAD_MODULE: &str = "sudo modprobe uinput";
+
+/// What keeps virtual devices from being made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UinputObstacle {
+    /// The reason, for people.
+    pub why: String,
+    /// The command that mends it, if one does.
+    pub mend: Option<&'static str>,
+}
+
+impl UinputObstacle {
+    fn of(error: &io::Error) -> Self {
+        let (why, mend) = match error.kind() {
+            io::ErrorKind::NotFound => ("is not there: the kernel's module is not loaded", Some(LOAD_MODULE)),
+            io::ErrorKind::PermissionDenied => ("cannot be written by you", Some(INSTALL_RULES)),
+            _ if error.raw_os_error() == Some(Errno::NODEV.raw_os_error()) => {
+                ("has no driver behind it: the kernel's module is not loaded", Some(LOAD_MODULE))
+            }
+            _ => return Self { why: format!("{UINPUT} makes no device ({error})"), mend: None },
+        };
+        Self { why: format!("{UINPUT} {why}"), mend }
+    }
+
+    fn error(&self) -> SinkError {
+        let Self { why, mend } = self;
+        let way_out = mend.unwrap_or("--output x11` or `--output log:FILE");
+        SinkError { message: format!("{why}; this helps: `{way_out}`") }
+    }
 }
 
 impl Sink for UinputSink {
@@ -157,7 +193,7 @@ impl UinputDevice {
             OutputDevice::Pointer => (make_pointer(), POINTER.name),
             OutputDevice::Tablet => (make_tablet(), TABLET.name),
         };
-        let mut device = made.map_err(|error| cannot_make(&error))?;
+        let mut device = made.map_err(|error| UinputObstacle::of(&error).error())?;
         let node = wait_for_node(&mut device).ok_or_else(|| no_node(name))?;
         Ok(Self { device, name, node, bytes: Vec::new(), held: Vec::new() })
     }
@@ -305,26 +341,6 @@ fn eventually<T>(limit_ms: u32, mut ask: impl FnMut() -> Option<T>) -> Option<T>
     ask()
 }
 
-/// The way out where uinput cannot be used.
-fn cannot_make(error: &io::Error) -> SinkError {
-    let message = match error.kind() {
-        io::ErrorKind::NotFound => {
-            format!("{UINPUT} does not exist: load the kernel's module with `sudo modprobe uinput`")
-        }
-        io::ErrorKind::PermissionDenied => format!(
-            "no permission to use {UINPUT}: run `echo 'KERNEL==\"uinput\", SUBSYSTEM==\"misc\", \
-             TAG+=\"uaccess\", OPTIONS+=\"static_node=uinput\"' | sudo tee \
-             /etc/udev/rules.d/60-tactpad-uinput.rules && sudo udevadm control --reload && \
-             sudo udevadm trigger {UINPUT}`"
-        ),
-        _ if error.raw_os_error() == Some(Errno::NODEV.raw_os_error()) => {
-            format!("{UINPUT} has no driver behind it: load the kernel's module with `sudo modprobe uinput`")
-        }
-        _ => format!("{UINPUT} makes no device ({error}): use `--output x11` or `--output log:FILE` instead"),
-    };
-    SinkError { message }
-}
-
 fn no_node(name: &str) -> SinkError {
     let message = format!(
         "the virtual {name} got no node in /dev/input within {NODE_LIMIT_MS} ms: load the kernel's module \
@@ -384,7 +400,7 @@ mod tests {
             (Errno::PERM, "/etc/udev/rules.d"),
             (Errno::INVAL, "--output"),
         ] {
-            let error = cannot_make(&code.into());
+            let error = UinputObstacle::of(&code.into()).error();
             assert!(error.message.contains(way_out) && error.message.contains(UINPUT), "{error}");
         }
     }

@@ -78,7 +78,7 @@ impl Opening {
     fn judged(&self, is_open: bool) -> Result<(), String> {
         match is_open {
             true => Ok(()),
-            false => Err(format!("{OPENER} found no browser: open {} in one", self.url)),
+            false => Err(format!("{OPENER} opened no browser: open {} in one", self.url)),
         }
     }
 }

@@ -1,16 +1,18 @@
 //! `tactpad demo`: the main job with nothing attached, and the proof that it went right.
 
-use std::io::{self, Write};
-use std::sync::{Arc, Mutex};
+use std::io::{self, IsTerminal, Write};
+use std::sync::Arc;
 
 use clap::Args;
-use serde::Serialize;
 
 use super::chosen;
 use super::displays::DisplayOptions;
+use super::figures::Figures;
 use super::files::Files;
-use super::output::{Output, log_to};
+use super::last_choice;
+use super::output::{Output, log_here};
 use super::playing::{Audience, TerminalHost, microseconds, open_virtual, play, requests_at};
+use super::profile_selection::first;
 use super::runtime::BridgeName;
 use super::screen::Screen;
 use crate::cli::failure::{Failure, if_read};
@@ -24,10 +26,8 @@ use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
 use tactpad::bridge::clock::Clock;
 use tactpad::bridge::event_loop::{Bridge, Ending};
-use tactpad::bridge::latency::Percentiles;
 use tactpad::bridge::opening::Patience;
 use tactpad::bridge::sink::Sink;
-use tactpad::bridge::sink::null::NullSink;
 use tactpad::bridge::sink::recording::{ExpectedEvent, RecordedEvents, RecordingSink};
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::counted::counted;
@@ -43,8 +43,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
     /// A profile's name or file.
-    #[arg(long, default_value = "super-mario")]
-    profile: String,
+    ///
+    /// Without it the profile that was chosen last by `tactpad setup` or in the tray, else super-mario.
+    #[arg(long)]
+    profile: Option<String>,
     #[command(flatten)]
     decoder: DecoderChoice,
     #[command(flatten)]
@@ -68,27 +70,22 @@ const SECONDS_OF_A_GESTURE_MAX: u32 = 60;
 /// The state file of the page's addresses; no name of a bridge has a dot.
 const PAGE_MEMORY: &str = "page-addresses.demo";
 
-/// The report of `tactpad demo`.
-#[derive(Serialize)]
-struct Summary {
-    frames: u64,
-    frames_lost: u64,
-    contacts: u64,
-    downs: usize,
-    ups: usize,
-    pointer_moves: usize,
-    held_at_end: usize,
-    latency_us: Percentiles,
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     wait_for_no_reader()?;
-    let Arguments { profile, output, decoder, json, .. } = arguments;
+    let Arguments { output, decoder, json, .. } = arguments;
     output.leaves_stdout(*json)?;
-    Files { pad: &PadAddress::Virtual, profile, output, decoder: chosen::file(decoder), capture: None }
-        .check()?;
+    let selected = arguments.profile.clone().unwrap_or_else(last_choice::profile);
+    let selected = first(&selected);
+    Files {
+        pad: &PadAddress::Virtual,
+        profile: selected,
+        output,
+        decoder: chosen::file(decoder),
+        capture: None,
+    }
+    .check()?;
     let decoder = chosen::read(decoder)?;
-    let profile = profile::read(profile, output.choice())?;
+    let profile = profile::read(selected, output.choice())?;
     let duration = arguments.duration();
     let script = script(profile.profile(), duration)?;
     let verdict = Verdict::of(&script, profile.profile());
@@ -98,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recording = if duration.is_some() { RecordingSink::new(sink) } else { RecordingSink::counting(sink) };
     let recorded = recording.recorded();
     let audience = Audience::Nobody;
-    let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
+    let host = TerminalHost::new(selected, output.choice(), audience)?;
     let (requests, reached) = requests_at(BridgeName::of_demos(), audience)?;
     let mut prepared = arguments.shown.prepare(
         PAGE_MEMORY,
@@ -126,19 +123,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         duration_us: duration.map(microseconds),
     })?;
     prepared.start(&bridge)?;
-    let screen =
-        is_shown(arguments).then(|| start_screen(format!("{name} on a virtual pad"), &bridge, &recorded));
+    let screen = is_shown(arguments)
+        .then(|| Screen::start(format!("{name} on a virtual pad"), bridge.snapshot(), Arc::clone(&recorded)));
     let played = play(&mut bridge, &PadAddress::Virtual);
     drop(screen);
     let ending = played?;
     let recorded = recorded.lock().map(|recorded| recorded.clone()).unwrap_or_default();
-    if_read(report(arguments, &bridge, &recorded))?;
+    if_read(report(arguments, &Figures::of(&bridge, &recorded)))?;
     if arguments.shown.has_page() {
         // Whoever sees the page may have changed what is played.
         return Ok(());
     }
     verdict.check(ending, &recorded, &bridge)?;
-    if_read(tell(arguments, &verdict.words()))
+    if_read(tell(arguments, &verdict.words()))?;
+    if_read(tell_next(arguments))
 }
 
 impl Arguments {
@@ -234,12 +232,9 @@ fn is_shown(arguments: &Arguments) -> bool {
     !arguments.json && arguments.output != Output::Stdout && terminal::moves_cursor(&io::stdout())
 }
 
-/// The event log on the screen: the live picture shows it, and without one it is lines on stdout.
+/// The event log on the screen. A document on stdout leaves no room for one.
 fn here(arguments: &Arguments) -> Result<Box<dyn Sink>, Failure> {
-    if arguments.json || is_shown(arguments) {
-        return Ok(Box::new(NullSink));
-    }
-    log_to(WhileRead(io::stdout()))
+    log_here(arguments.json || is_shown(arguments), WhileRead(io::stdout()))
 }
 
 /// Writes as long as somebody reads. The demo goes on without a reader: its verdict is the exit code.
@@ -270,48 +265,20 @@ fn tell(arguments: &Arguments, line: &str) -> Result<(), Failure> {
     Ok(writeln!(stdout(), "{line}")?)
 }
 
-fn start_screen(title: String, bridge: &Bridge, seen: &Arc<Mutex<RecordedEvents>>) -> Screen {
-    let seen = Arc::clone(seen);
-    Screen::start(title, bridge.snapshot(), move || {
-        let newest = seen.lock().map(|seen| seen.newest.clone());
-        newest.unwrap_or_default().into_iter().collect()
-    })
+/// What somebody at a terminal may type next.
+fn tell_next(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.json || !io::stdin().is_terminal() {
+        return Ok(());
+    }
+    let game = if last_choice::pad().is_some() { "run" } else { "setup" };
+    tell(arguments, &format!("In a game: `tactpad {game}`; in the browser: `tactpad demo --dashboard`"))
 }
 
-fn report(arguments: &Arguments, bridge: &Bridge, seen: &RecordedEvents) -> Result<(), Failure> {
-    let health = bridge.health();
-    let edge_counts = seen.edge_counts();
-    let summary = Summary {
-        frames: health.samples,
-        frames_lost: health.frames_lost + health.frames_damaged,
-        contacts: health.contacts,
-        downs: edge_counts.downs,
-        ups: edge_counts.ups,
-        pointer_moves: seen.pointer_moves,
-        held_at_end: edge_counts.held,
-        latency_us: bridge.latency().percentiles(),
-    };
-    if arguments.json {
-        return print_json(&summary);
+fn report(arguments: &Arguments, figures: &Figures) -> Result<(), Failure> {
+    match arguments.json {
+        true => print_json(figures),
+        false => tell(arguments, &figures.lines().join("\n")),
     }
-    let Summary { frames, frames_lost, contacts, downs, ups, pointer_moves, held_at_end, latency_us } =
-        summary;
-    let Percentiles { p50, p95, p99, max } = latency_us;
-    tell(
-        arguments,
-        &format!("{}, {frames_lost} lost; {}", counted(frames, "frame"), counted(contacts, "contact")),
-    )?;
-    tell(
-        arguments,
-        &format!("{}, {}, {held_at_end} held at the end", counted(downs, "down"), counted(ups, "up")),
-    )?;
-    if pointer_moves > 0 {
-        tell(arguments, &format!("{} of the pointer", counted(pointer_moves, "move")))?;
-    }
-    let times = format!(
-        "bytes readable to event written: p50 {p50:.0} µs, p95 {p95:.0} µs, p99 {p99:.0} µs, max {max:.0} µs"
-    );
-    tell(arguments, &times)
 }
 
 fn check_end(bridge: &Bridge, expected: u64) -> Result<(), String> {

@@ -1,8 +1,9 @@
-//! What was chosen last, which is played where a command line says nothing: the pad of `tactpad setup`, and the profile of that or of the
-//! tray.
+//! What was chosen last, which is played where a command line says nothing: the pad and output of `tactpad setup`, and the profile of that
+//! or of the tray.
 
 use std::path::{self, Path};
 
+use super::output::{Output, variable, window_of_keys};
 use super::profile_selection::{FALLBACK, first};
 use crate::cli::failure::Failure;
 use crate::cli::files::state_file;
@@ -16,6 +17,9 @@ const PROFILE: &str = "last-profile";
 
 /// The file that remembers the pad: a line as `run --pad` takes it, and one with the path or name of its description if it needs one.
 const PAD: &str = "last-pad";
+
+/// The file that remembers the output, as `run --output` takes it.
+const OUTPUT: &str = "last-output";
 
 /// A pad, and its description where the address does not name one inside the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,9 +63,32 @@ fn pad_in(text: &str) -> Option<ChosenPad> {
     Some(ChosenPad { address, source: lines.next().map(str::to_owned) })
 }
 
-/// Keeps a pad; `None` is whatever comes.
-pub(super) fn keep_pad(pad: Option<&ChosenPad>) -> Result<(), Failure> {
-    state_file::write(PAD, &pad.map(text_of).unwrap_or_default())
+/// Keeps a pad.
+pub(super) fn keep_pad(pad: &ChosenPad) -> Result<(), Failure> {
+    state_file::write(PAD, &text_of(pad))
+}
+
+/// The output that was chosen, whether it can be used or not.
+pub(super) fn kept_output() -> Output {
+    state_file::read(OUTPUT).trim_end().parse().unwrap_or(Output::Auto)
+}
+
+/// The output that is played into: the chosen one, and not keys where no X server takes them.
+pub(super) fn output() -> Output {
+    match kept_output() {
+        Output::X11 if window_of_keys(variable).is_none() => {
+            say(
+                "`tactpad setup` chose keys of the X server, and there is none here: playing with --output auto",
+            );
+            Output::Auto
+        }
+        kept => kept,
+    }
+}
+
+/// Keeps an output.
+pub(super) fn keep_output(output: &Output) -> Result<(), Failure> {
+    state_file::write(OUTPUT, &format!("{output}\n"))
 }
 
 fn text_of(pad: &ChosenPad) -> String {

@@ -120,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn open_sink(output: &Output) -> Result<Box<dyn Sink>, Failure> {
     match output {
-        Output::Auto if uinput::available().is_err() => Ok(Box::new(NullSink)),
+        Output::Auto if uinput::available().is_err() => Ok(Box::new(NullSink::NOWHERE)),
         output => output.open(),
     }
 }

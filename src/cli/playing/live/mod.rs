@@ -13,6 +13,7 @@ mod described;
 pub(super) mod devices;
 mod displays;
 pub(super) mod doctor;
+mod figures;
 mod files;
 mod follower;
 pub(crate) mod guardian;
@@ -22,7 +23,6 @@ mod kept_play;
 mod last_choice;
 pub(super) mod latency;
 mod left_keys;
-mod newest;
 mod output;
 #[cfg(feature = "dashboard")]
 mod page;

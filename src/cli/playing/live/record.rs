@@ -1,5 +1,6 @@
 //! `tactpad record`: plays like `run` and writes down every call, so that `replay` gives the same events.
 
+use std::io;
 use std::path::PathBuf;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread;
@@ -10,8 +11,7 @@ use clap::Args;
 use super::chosen;
 use super::described::{DescribedPad, SourceOption};
 use super::files::{self, Files};
-use super::newest::Newest;
-use super::output::Output;
+use super::output::{Output, log_to};
 use super::playing::{
     Audience, TerminalHost, WaitOption, create_capture, microseconds, open_pad, patience, play, requests_at,
 };
@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let described = arguments.source.read(pad, decoder)?;
     let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
     let profile = profile::read(profile, output.choice())?;
-    let (sink, missing) = output.open_or(|| Newest::default().sink(false))?;
+    let (sink, missing) = output.open_or(|| log_to(io::stdout()))?;
     let patience = patience(&arguments.pad, WaitOption::NotGiven);
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), patience)?;
     let opened = opened.with_wiring(arguments.wired.wiring).with_faults(arguments.faults)?;

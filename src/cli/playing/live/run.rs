@@ -1,18 +1,19 @@
 //! `tactpad run`: the live bridge.
 
 use std::io;
+use std::sync::Arc;
 
 use clap::Args;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::described::{DescribedPad, SourceOption};
 use super::displays::DisplayOptions;
+use super::figures::Figures;
 use super::files::Files;
 use super::follower;
 use super::keeping::{KeepPlay, PlayKeeping};
 use super::last_choice::ChosenPad;
-use super::newest::Newest;
-use super::output::Output;
+use super::output::{Output, log_here};
 use super::playing::{
     Audience, TerminalHost, WaitOption, microseconds, open_pad, patience, play, requests_at,
 };
@@ -31,8 +32,11 @@ use crate::cli::printing::written::{printable, say, wait_for_no_reader};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::clock::Clock;
 use tactpad::bridge::event_loop::{Bridge, Ending};
+use tactpad::bridge::sink::Sink as _;
+use tactpad::bridge::sink::recording::RecordingSink;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::bridge::transport::fault::FaultPlan;
+use tactpad::bridge::transport::pads;
 
 /// Arguments of `tactpad run`.
 #[derive(Debug, Args)]
@@ -62,8 +66,10 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     decoder: DecoderChoice,
     /// Where events go: auto (virtual devices, else an event log here), uinput, x11, log:FILE (- is stdout), none.
-    #[arg(long, default_value = "auto")]
-    output: Output,
+    ///
+    /// Without it what was chosen in `tactpad setup`, else auto.
+    #[arg(long)]
+    output: Option<Output>,
     #[command(flatten)]
     shown: DisplayOptions,
     /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
@@ -85,7 +91,8 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     wait_for_no_reader()?;
-    let Arguments { output, decoder, .. } = arguments;
+    let decoder = &arguments.decoder;
+    let output = &arguments.output.clone().unwrap_or_else(last_choice::output);
     let ChosenPad { address: pad, source } = arguments.chosen_pad();
     let (pad, source) = (&pad, arguments.source.or(source));
     let selected = arguments.profile.clone().unwrap_or_else(last_choice::profile);
@@ -102,8 +109,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let waits = arguments.wait || arguments.pad.is_none();
     let patience = patience(pad, if waits { WaitOption::Given } else { WaitOption::NotGiven });
     let is_shown = audience == Audience::Nobody;
-    let newest = Newest::default();
-    let (sink, missing) = output.open_or(|| newest.sink(is_shown))?;
+    let (sink, missing) = output.open_or(|| log_here(is_shown, io::stdout()))?;
+    let sink = RecordingSink::counting(sink);
+    let recorded = sink.recorded();
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), patience)?;
     let opened = opened.with_wiring(arguments.wired.wiring).with_faults(arguments.faults)?;
     let name = &profile.profile().name;
@@ -143,7 +151,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         patience,
         decoder,
         profile,
-        sink: prepared.sink(sink),
+        sink: prepared.sink(Box::new(sink)),
         requests,
         host: Box::new(host.with_page(prepared.url.clone())),
         record: None,
@@ -152,13 +160,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         duration_us: arguments.seconds.map(microseconds),
     })?;
     prepared.start(&bridge)?;
-    let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.events()));
+    let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), Arc::clone(&recorded)));
     let ending = play(&mut bridge, pad);
     drop(screen);
+    let figures = recorded.lock().map(|recorded| Figures::of(&bridge, &recorded)).ok();
     // What keeps play ends with what it hears.
     drop(bridge);
     keeping.end();
-    ended(ending, prints)
+    ended(ending, prints, figures.as_ref())
 }
 
 impl Arguments {
@@ -168,18 +177,29 @@ impl Arguments {
         let named = self.pad.clone().or_else(|| self.source.is_given().then(|| auto.clone()));
         match named {
             Some(address) => ChosenPad { address, source: None },
-            None => last_choice::pad().unwrap_or(ChosenPad { address: auto, source: None }),
+            None => {
+                let kept = last_choice::pad().unwrap_or(ChosenPad { address: auto, source: None });
+                if kept.address == PadAddress::Virtual && !pads::attached().is_empty() {
+                    say(
+                        "a pad is attached, and `tactpad setup` chose one of software: --pad auto takes the one that is attached",
+                    );
+                }
+                kept
+            }
         }
     }
 }
 
-/// How the run ended, told where nobody sees it.
-fn ended(ending: Result<Ending, Failure>, prints: bool) -> Result<(), Failure> {
+/// How the run ended, and what was played.
+fn ended(ending: Result<Ending, Failure>, prints: bool, figures: Option<&Figures>) -> Result<(), Failure> {
     match ending {
         Err(_) if prints && is_unread() => return Err(Failure::Unread),
         Ok(Ending::CaptureEnded) => say("the capture has ended"),
         Ok(_) => {}
         Err(failure) => return Err(failure),
+    }
+    if let Some(figures) = figures {
+        say(figures.lines().join("\n"));
     }
     Ok(())
 }

@@ -11,7 +11,10 @@ use std::time::Duration;
 
 use rustix::termios::tcgetwinsize;
 
+use crate::cli::printing::wrapped::lines;
+use tactpad::bridge::sink::recording::RecordedEvents;
 use tactpad::bridge::snapshot::{BridgeHealth, Snapshot, Status};
+use tactpad::bridge::state::State;
 use tactpad::counted::counted;
 use tactpad::pipeline::control::names::HAT_AXES;
 use tactpad::pipeline::control::{Code, OutputEvent};
@@ -25,6 +28,9 @@ const ROWS: usize = 13;
 /// A terminal with less has no room for the plate beside the facts, or for all of it.
 const COLUMNS_WITH_PLATE: usize = 64;
 const ROWS_WITH_PLATE: usize = ROWS + 2;
+
+/// What has room beside the plate on a usual terminal.
+const FACT_COLUMNS: usize = 80 - COLUMNS - 4;
 
 /// Radius of the plate.
 const PLATE_MM: f32 = 30.0;
@@ -45,11 +51,11 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// Starts drawing on stdout, which must be a terminal. `events` gives the newest events.
+    /// Starts drawing on stdout, which must be a terminal; the newest of the recorded events stand beside the plate.
     pub(super) fn start(
         title: String,
         snapshot: Arc<Mutex<Snapshot>>,
-        events: impl Fn() -> Vec<OutputEvent> + Send + 'static,
+        recorded: Arc<Mutex<RecordedEvents>>,
     ) -> Self {
         let (stop, stopped) = channel::<()>();
         let (draws, drawing) = channel::<()>();
@@ -58,10 +64,12 @@ impl Screen {
             let mut last = None;
             while stopped.recv_timeout(REFRESH) == Err(RecvTimeoutError::Timeout) {
                 let Ok(seen) = snapshot.lock().map(|seen| seen.clone()) else { return };
+                let events: Vec<_> =
+                    recorded.lock().map(|it| it.newest.iter().copied().collect()).unwrap_or_default();
                 let size = Size::of(&io::stdout());
                 let picture = Picture {
                     size,
-                    lines: picture(&title, facts(&seen, &events()), seen.status.contact.as_ref(), size),
+                    lines: picture(&title, facts(&seen, &events), seen.status.contact.as_ref(), size),
                 };
                 if draw(&picture.over(last.as_ref())).is_err() {
                     return;
@@ -168,8 +176,11 @@ fn facts(seen: &Snapshot, events: &[OutputEvent]) -> Vec<String> {
         &seen.status;
     let BridgeHealth { pipeline, drops } = health;
     let forces = contact.unwrap_or_default();
-    let mut facts = vec![
-        format!("{:<9} {:6.1} s", state.word(), seen.at.as_ns() as f64 * 1e-9),
+    let mut facts = vec![format!("{:<9} {:6.1} s", state.word(), seen.at.as_ns() as f64 * 1e-9)];
+    if !matches!(state, State::Playing | State::Paused) {
+        facts.extend(lines(state.sentence(), FACT_COLUMNS));
+    }
+    facts.extend([
         match contact {
             Some(Contact { x_mm, y_mm, .. }) => format!("x {x_mm:+6.1} mm   y {y_mm:+6.1} mm"),
             None => "no contact".into(),
@@ -182,7 +193,7 @@ fn facts(seen: &Snapshot, events: &[OutputEvent]) -> Vec<String> {
             pipeline.samples, pipeline.frames_lost, pipeline.frames_damaged
         ),
         format!("read to written  p50 {:.0} µs   p99 {:.0} µs", latency_us.p50, latency_us.p99),
-    ];
+    ]);
     let unusable = profile_error.as_ref().and_then(|error| error.lines().next());
     facts.extend(unusable.map(|error| format!("! {error}: see `tactpad ctl status`")));
     facts.extend(warning.map(|warning| format!("! {warning}")));

@@ -125,6 +125,7 @@ async function start() {
   const key = await enter().catch((error) => say(connection, error.message));
   if (!key) {
     if (connection.textContent === "") say(connection, NO_WAY_IN);
+    views.live.status.clear();
     return startRouter();
   }
   await loadWords();

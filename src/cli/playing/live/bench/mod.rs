@@ -108,7 +108,7 @@ fn measured(arguments: &Arguments) -> Result<BenchReport, Failure> {
         patience: waits,
         decoder: PlayingDecoder { decoder, name: shipped::INVERSE.into(), place: None, file: None },
         profile,
-        sink: Box::new(NullSink),
+        sink: Box::new(NullSink::NOWHERE),
         requests,
         host: Box::new(SessionHost::new(terminal, tell)),
         record: None,

@@ -222,7 +222,7 @@ fn lead(arguments: &Arguments, parts: SessionParts) -> Result<Guide, Failure> {
         patience: patience(&arguments.pad, WaitOption::NotGiven),
         decoder,
         profile,
-        sink: Box::new(NullSink),
+        sink: Box::new(NullSink::NOWHERE),
         requests,
         host: Box::new(SessionHost::new(terminal, tell)),
         record: None,

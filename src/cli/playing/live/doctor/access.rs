@@ -8,8 +8,9 @@ use rustix::fs::{Access, access};
 use super::bridge::RunningBridge;
 use super::check::{Check, Finding};
 use crate::cli::playing::live::devices::{ListedDevice, input_devices};
+use crate::cli::playing::live::output::Output;
 use crate::cli::printing::written::{printable, quoted};
-use tactpad::bridge::sink::uinput;
+use tactpad::bridge::sink::uinput::{self, INSTALL_RULES, UinputObstacle};
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::bridge::transport::firmware::{OLDEST, dotted};
 use tactpad::bridge::transport::pads::{self, Attachment, FoundPad};
@@ -17,28 +18,16 @@ use tactpad::bridge::transport::pads::{self, Attachment, FoundPad};
 /// The rules that give the player access; a test holds their number below that of the seat's.
 pub(super) const RULES: &str = include_str!("../../../../../docs/linux/70-tactpad.rules");
 
-/// Where the rules belong.
-const RULES_FILE: &str = "/etc/udev/rules.d/70-tactpad.rules";
-
 /// Seats are given out by a file of this number; what a later file tags has no effect.
 const SEAT_NUMBER: u32 = 73;
-
-pub(super) fn install_rules() -> String {
-    format!(
-        "tactpad doctor --udev-rules | sudo tee {RULES_FILE} && sudo udevadm control --reload && sudo udevadm trigger"
-    )
-}
 
 pub(super) fn check_uinput() -> Check {
     let name = "virtual devices";
     match uinput::available() {
         Ok(()) => Check::good(name, "/dev/uinput can be written"),
-        Err(_) if !Path::new("/dev/uinput").exists() => Check::bad(
-            name,
-            "/dev/uinput is not there: the kernel's module is not loaded",
-            "sudo modprobe uinput && echo uinput | sudo tee /etc/modules-load.d/tactpad.conf",
-        ),
-        Err(_) => Check::bad(name, "/dev/uinput cannot be written by you", install_rules()),
+        Err(UinputObstacle { why, mend }) => {
+            Check { finding: Finding::Bad, mend: mend.map(str::to_owned), ..Check::note(name, why) }
+        }
     }
 }
 
@@ -55,13 +44,13 @@ pub(super) fn check_rules(root: &Path) -> Check {
     ours.sort();
     match ours.first() {
         None => Check {
-            mend: Some(install_rules()),
+            mend: Some(INSTALL_RULES.into()),
             ..Check::note(name, "tactpad's rules are not installed; with them you play without root")
         },
         Some(file) if number(file).is_none_or(|number| number >= SEAT_NUMBER) => Check::bad(
             name,
             format!("{file} comes after {SEAT_NUMBER}-seat-late.rules, so its uaccess tags have no effect"),
-            format!("sudo rm /etc/udev/rules.d/{file} && {}", install_rules()),
+            format!("sudo rm /etc/udev/rules.d/{file} && {}", INSTALL_RULES),
         ),
         Some(file) => Check::good(name, format!("{file} is installed")),
     }
@@ -71,9 +60,9 @@ fn number(file: &str) -> Option<u32> {
     file.split('-').next()?.parse().ok()
 }
 
-/// What this user may not open that playing with the pad at `address` needs, each with the command that mends it.
-pub(in crate::cli::playing::live) fn denied(address: &PadAddress) -> Vec<(String, String)> {
-    let mut checks = vec![check_uinput()];
+/// What this user may not open that playing with the pad at `address` into `output` needs, each with the command that mends it.
+pub(in crate::cli::playing::live) fn denied(address: &PadAddress, output: &Output) -> Vec<(String, String)> {
+    let mut checks: Vec<_> = (*output != Output::X11).then(check_uinput).into_iter().collect();
     match address {
         PadAddress::Auto { .. } | PadAddress::Hid { .. } | PadAddress::Usb { .. } => {
             checks.extend(pads::attached().iter().map(check_pad));
@@ -108,10 +97,13 @@ fn check_port(path: &str) -> Check {
     Check::bad("pad", message, format!("sudo setfacl -m u:$USER:rw {}", quoted(path)))
 }
 
-/// Virtual devices, which a bridge that plays into something else does without.
-pub(super) fn check_needed_uinput(running: Option<&RunningBridge>) -> Check {
+/// Virtual devices, which a bridge that plays into something else does without, and so does `run` where `chosen` is keys.
+pub(super) fn check_needed_uinput(running: Option<&RunningBridge>, chosen: &Output) -> Check {
     let check = check_uinput();
     match running.filter(|bridge| bridge.nodes().is_empty() && check.finding == Finding::Bad) {
+        None if running.is_none() && check.finding == Finding::Bad && *chosen == Output::X11 => {
+            check.noted("`tactpad setup` chose keys of the X server, which do without")
+        }
         Some(bridge) => {
             let output = &bridge.output;
             let place = if output.starts_with("event log") { "an event log, and no game" } else { output };
@@ -150,7 +142,7 @@ fn check_pad(pad: &FoundPad) -> Check {
     // Not opened: that would reset some boards, and disturb a bridge that plays on it.
     match access(&pad.path, Access::READ_OK | Access::WRITE_OK) {
         Ok(()) => Check::good("pad", format!("{path} may be opened")),
-        Err(_) => Check::bad("pad", format!("{path} may not be opened by you"), install_rules()),
+        Err(_) => Check::bad("pad", format!("{path} may not be opened by you"), INSTALL_RULES),
     }
 }
 
@@ -268,11 +260,13 @@ mod tests {
 
     #[test]
     fn a_bridge_that_plays_into_a_log_needs_no_virtual_device() {
-        let found =
-            |status: Option<&str>| check_needed_uinput(status.map(RunningBridge::of).as_ref()).finding;
+        let found = |status: Option<&str>| {
+            check_needed_uinput(status.map(RunningBridge::of).as_ref(), &Output::Auto).finding
+        };
         let unneeded = if check_uinput().finding == Finding::Bad { Finding::Note } else { Finding::Good };
         assert_eq!(found(Some(r#"{"output":"event log in events"}"#)), unneeded);
         assert_eq!(found(None), check_uinput().finding);
+        assert_eq!(check_needed_uinput(None, &Output::X11).finding, unneeded);
     }
 
     #[test]
@@ -301,7 +295,7 @@ mod tests {
 
     #[test]
     fn the_shipped_rules_come_before_the_seats() {
-        let file = Path::new(RULES_FILE).file_name().unwrap().to_str().unwrap();
+        let (_, file) = INSTALL_RULES.split_once("/etc/udev/rules.d/").unwrap();
         assert!(number(file).unwrap() < SEAT_NUMBER);
         assert_eq!(RULES.matches("TAG+=\"uaccess\"").count(), 4);
     }

@@ -26,6 +26,7 @@ use crate::cli::failure::{Failure, if_read};
 use crate::cli::printing::written::{print_json, printable, stdout};
 use tactpad::bridge::control::ask;
 use tactpad::bridge::foreground::WindowSystem;
+use tactpad::bridge::transport::address::PadAddress;
 use tactpad::bridge::transport::pads;
 
 pub(super) use self::access::denied;
@@ -69,8 +70,11 @@ pub(super) fn examine(name: Option<&BridgeName>) -> DoctorReport {
     };
     let running = bridge.as_deref().ok().map(RunningBridge::of);
     let own = running.as_ref().map(RunningBridge::nodes).unwrap_or_default();
-    let mut checks =
-        vec![check_setup(), access::check_needed_uinput(running.as_ref()), access::check_rules(root)];
+    let mut checks = vec![
+        check_setup(),
+        access::check_needed_uinput(running.as_ref(), &last_choice::kept_output()),
+        access::check_rules(root),
+    ];
     checks.extend(access::check_pads(&pads::attached(), running.as_ref()));
     checks.extend(access::check_input_devices(&input_devices()));
     checks.extend(serial_ports::check_modems(root));
@@ -93,13 +97,21 @@ pub(super) fn examine(name: Option<&BridgeName>) -> DoctorReport {
 fn check_setup() -> Check {
     let name = "set-up";
     let (pad, profile) = (last_choice::pad(), last_choice::kept_profile());
+    let mend = Some("tactpad setup".into());
     if pad.is_none() && profile.is_none() {
-        let mend = Some("tactpad setup".into());
         return Check { mend, ..Check::note(name, "not done yet; a few questions lead to the first game") };
     }
-    let pad = pad.map_or_else(|| "whatever pad comes".to_owned(), |pad| format!("the pad {}", pad.address));
+    let pad_words = pad
+        .as_ref()
+        .map_or_else(|| "whatever pad comes".to_owned(), |pad| format!("the pad {}", pad.address));
     let profile = profile.map(|profile| format!(", profile {profile}")).unwrap_or_default();
-    Check::good(name, printable(&format!("`tactpad run` plays with {pad}{profile}")))
+    let message =
+        format!("`tactpad run` plays with {pad_words}{profile}, output {}", last_choice::kept_output());
+    let check = Check::good(name, printable(&message));
+    if pad.is_some_and(|pad| pad.address == PadAddress::Virtual) && !pads::attached().is_empty() {
+        return Check { mend, ..check.noted("a pad is attached, and this chooses it") };
+    }
+    check
 }
 
 fn print(report: &DoctorReport) -> io::Result<()> {

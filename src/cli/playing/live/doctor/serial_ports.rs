@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::access::install_rules;
 use super::check::Check;
+use tactpad::bridge::sink::uinput::INSTALL_RULES;
 use tactpad::firmware_proto::hid::{PRODUCT_ID, VENDOR_ID};
 
 const NAME: &str = "serial ports";
@@ -30,7 +30,7 @@ pub(super) fn check_modems(root: &Path) -> Vec<Check> {
     let open = with_port.filter(|(_, device)| !rules.iter().any(|(_, text)| keeps_modems_off(text, device)));
     open.map(|(port, UsbDevice { vendor, product, .. })| {
         let mend = if (vendor, product) == (VENDOR_ID, PRODUCT_ID) {
-            install_rules()
+            INSTALL_RULES.to_owned()
         } else {
             format!(
                 "echo 'ATTRS{{idVendor}}==\"{vendor:04x}\", ATTRS{{idProduct}}==\"{product:04x}\", ENV{{ID_MM_DEVICE_IGNORE}}=\"1\"' | \

@@ -1,6 +1,7 @@
 //! What the desktop's session allows: keys without virtual devices, and profiles that follow the program in front.
 
 use super::check::Check;
+use crate::cli::playing::live::output::window_of_keys;
 
 /// Whether profiles can follow the program in front, where there is a desktop; `open` asks it.
 pub(super) fn check_foreground(
@@ -21,16 +22,14 @@ pub(super) fn check_foreground(
     })
 }
 
-pub(super) fn check_keys(variable: impl Fn(&str) -> Option<String>) -> Vec<Check> {
-    let name = "keys without uinput";
-    match (variable("WAYLAND_DISPLAY"), variable("DISPLAY")) {
-        (Some(_), _) => vec![Check::note(
-            name,
-            "this is a Wayland session: --output x11 reaches only programs that run on XWayland",
-        )],
-        (None, Some(display)) => vec![Check::note(name, format!("--output x11 types on display {display}"))],
-        (None, None) => Vec::new(),
-    }
+/// Keys of the X server, where there is one.
+pub(super) fn check_keys(variable: impl Fn(&str) -> Option<String>) -> Option<Check> {
+    let window = window_of_keys(variable)?;
+    let message = format!("keys of the X server reach {window}");
+    Some(Check {
+        mend: Some("tactpad run --output x11".into()),
+        ..Check::note("keys without uinput", message)
+    })
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
-//! `tactpad setup`: leads who is new here to the first game, in four questions.
+//! `tactpad setup`: leads who is new here to the first game, in five questions at most.
 
+mod games;
 mod offers;
 mod questions;
 
@@ -8,12 +9,16 @@ use std::process::{Command, Stdio};
 
 use clap::{Args, ValueEnum};
 
-use self::questions::{Questions, command, list, say};
+use self::games::{Choice, Kind};
+use self::questions::{Questions, command, list, list_from, say};
 use super::last_choice::{self, ChosenPad};
+use super::output::{Output, variable, window_of_keys};
 use super::profile_selection::{FALLBACK, ProfileSelection, first};
 use super::{devices, doctor};
 use crate::cli::failure::Failure;
 use crate::cli::playing::{profile, source};
+use tactpad::bridge::sink::uinput::{self, UinputObstacle};
+use tactpad::bridge::sink::x11::X11Sink;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::source::shipped;
@@ -30,6 +35,9 @@ pub(crate) struct Arguments {
     /// The description of a pad of your own, as `run --source` takes it.
     #[arg(long, value_name = "NAME|FILE", requires = "pad")]
     source: Option<String>,
+    /// How games get what is pressed: auto is by virtual devices, x11 by keys of the X server, which go to the window in front.
+    #[arg(long, value_name = "OUTPUT", value_parser = kept_output)]
+    output: Option<Output>,
     /// Whether to try it for ten seconds.
     #[arg(long = "try", value_name = "WHETHER")]
     trial: Option<Trial>,
@@ -58,17 +66,36 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         "A few questions lead to the first game. Enter takes the answer in brackets. Nothing is kept before the last one; Ctrl-C ends it.",
     )?;
     let pad = arguments.asked_pad(&mut questions)?;
-    ask_permission(&mut questions, &pad)?;
+    let output = arguments.asked_output(&mut questions)?;
+    ask_permission(&mut questions, &pad, &output)?;
     let usual = usual_profile(&pad);
     arguments.try_out(&mut questions, &pad, &usual)?;
     let profile = arguments.asked_profile(&mut questions, &usual)?;
-    let is_software = pad.address == PadAddress::Virtual;
-    // A pad of software is for now: one that is plugged in later is to play.
-    last_choice::keep_pad(Some(&pad).filter(|_| !is_software))?;
+    last_choice::keep_pad(&pad)?;
+    last_choice::keep_output(&output)?;
     last_choice::keep_profile(&ProfileSelection::of(&profile).as_argument())?;
-    say("\nThat is kept. From now on this plays, until Ctrl-C ends it:")?;
-    command(if is_software { "tactpad run --pad virtual" } else { "tactpad run" })?;
+    say(&format!("\nThat is kept. {}", what_plays(&output, uinput::available().is_ok())))?;
+    command(if output == Output::X11 { "tactpad run --output x11" } else { "tactpad run" })?;
     say("With --dashboard behind it a page in the browser shows the pad, and profiles are changed there.")
+}
+
+/// What the command at the end does.
+const fn what_plays(output: &Output, has_devices: bool) -> &'static str {
+    match (output, has_devices) {
+        (Output::X11, _) => {
+            "From now on this presses keys, until Ctrl-C ends it. They go to whatever window is in front: start the game first."
+        }
+        (_, true) => "From now on this plays, until Ctrl-C ends it:",
+        (_, false) => {
+            "From now on this shows what is pressed, until Ctrl-C ends it; no game gets it while there are no virtual devices (`tactpad doctor`):"
+        }
+    }
+}
+
+/// An output that can be kept.
+fn kept_output(text: &str) -> Result<Output, String> {
+    let output = text.parse().ok().filter(|output| matches!(output, Output::Auto | Output::X11));
+    output.ok_or_else(|| "choose auto or x11".into())
 }
 
 impl Arguments {
@@ -103,6 +130,35 @@ impl Arguments {
         }
     }
 
+    /// How games are to get what is pressed. It is asked where there are no virtual devices, and an X server takes keys.
+    fn asked_output(&self, questions: &mut Questions) -> Result<Output, Failure> {
+        if let Some(given) = &self.output {
+            return Ok(given.clone());
+        }
+        let (Some(window), Err(UinputObstacle { why, mend })) =
+            (window_of_keys(variable), uinput::available())
+        else {
+            return Ok(Output::Auto);
+        };
+        if X11Sink::open(None, None).is_err() {
+            return Ok(Output::Auto);
+        }
+        questions.ask(&format!("How are games to get what is pressed? {why}."))?;
+        let devices = mend.map_or_else(String::new, |_| ", after one command, which comes next".to_owned());
+        list(&[
+            format!("by a virtual gamepad{devices}"),
+            format!("by keys on this X display, which go to {window}"),
+        ])?;
+        let usual = if last_choice::kept_output() == Output::X11 { "2" } else { "1" };
+        loop {
+            match questions.answer(usual)?.as_str() {
+                "1" => return Ok(Output::Auto),
+                "2" => return Ok(Output::X11),
+                _ => say("Answer 1 or 2.")?,
+            }
+        }
+    }
+
     /// Plays for some seconds, if that is wanted.
     fn try_out(&self, questions: &mut Questions, pad: &ChosenPad, profile: &str) -> Result<(), Failure> {
         let is_wanted = match self.trial {
@@ -129,13 +185,17 @@ impl Arguments {
         if let Some(given) = &self.profile {
             return Ok(given.clone());
         }
-        let known = profile::known();
+        let choices = games::choices();
         questions.ask("Which game? A number or a name; auto goes by the program that is in front.")?;
-        list(&known.iter().map(|name| titled(name)).collect::<Vec<_>>())?;
+        let mut number = 1;
+        for kind in choices.chunk_by(|one, next| one.kind == next.kind) {
+            kind.first().map_or(Ok(()), |choice| say(choice.kind.heading()))?;
+            number = list_from(number, &kind.iter().map(Choice::words).collect::<Vec<_>>())?;
+        }
         loop {
             let answer = questions.answer(usual)?;
-            let number = answer.parse().ok().and_then(|number: usize| known.get(number.checked_sub(1)?));
-            let name = number.unwrap_or(&answer);
+            let number = answer.parse().ok().and_then(|number: usize| choices.get(number.checked_sub(1)?));
+            let name = number.map_or(&answer, |choice| &choice.name);
             match is_usable(name) {
                 Ok(()) => return Ok(name.clone()),
                 Err(failure) => say(&failure.sentence())?,
@@ -160,26 +220,20 @@ fn is_usable(profile: &str) -> Result<(), Failure> {
     profile::read_aside(first(profile), OutputChoice::AsWritten).map(|_| ())
 }
 
-/// A profile's name and title.
-fn titled(name: &str) -> String {
-    let read = profile::read_aside(name, OutputChoice::AsWritten);
-    let title = read.map_or_else(|_| "has errors".to_owned(), |(read, _)| read.profile().name.clone());
-    format!("{name} ({title})")
-}
-
-/// The profile in brackets: the last one, else the pad's own.
+/// The profile in brackets: the last one, else the pad's own, else that of a game which is installed.
 fn usual_profile(pad: &ChosenPad) -> String {
     let kept = last_choice::kept_profile().filter(|name| is_usable(name).is_ok());
     let of_pad = || match &pad.address {
         PadAddress::Described { name, .. } if profile::is_known(name) => Some(name.clone()),
         _ => None,
     };
-    kept.or_else(of_pad).unwrap_or_else(|| FALLBACK.to_owned())
+    let installed = || games::choices().into_iter().find(|it| it.kind == Kind::Installed).map(|it| it.name);
+    kept.or_else(of_pad).or_else(installed).unwrap_or_else(|| FALLBACK.to_owned())
 }
 
 /// Says what may not be opened, with the command that mends it, and looks again when that is done.
-fn ask_permission(questions: &mut Questions, pad: &ChosenPad) -> Result<(), Failure> {
-    let denied = doctor::denied(&pad.address);
+fn ask_permission(questions: &mut Questions, pad: &ChosenPad, output: &Output) -> Result<(), Failure> {
+    let denied = doctor::denied(&pad.address, output);
     if denied.is_empty() {
         return say("\nPermission: all that is needed may be opened.");
     }
@@ -189,7 +243,7 @@ fn ask_permission(questions: &mut Questions, pad: &ChosenPad) -> Result<(), Fail
         command(&mend)?;
     }
     questions.answer("look again")?;
-    if doctor::denied(&pad.address).is_empty() {
+    if doctor::denied(&pad.address, output).is_empty() {
         return say("Now all that is needed may be opened.");
     }
     say("It is still missing. The set-up goes on; `tactpad doctor` says later how it stands.")
@@ -201,7 +255,8 @@ fn plays(pad: &ChosenPad, profile: &str) -> Result<bool, Failure> {
     if pad.address == PadAddress::Virtual {
         program.arg("demo");
     } else {
-        program.args(["run", "--keep-play", "no", "--pad"]).arg(pad.address.to_string());
+        // Keys would go to this terminal.
+        program.args(["run", "--keep-play", "no", "--output", "auto", "--pad"]).arg(pad.address.to_string());
         program.args(pad.source.iter().flat_map(|source| ["--source", source]));
     }
     // The answers are not for it.

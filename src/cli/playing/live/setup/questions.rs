@@ -29,10 +29,15 @@ pub(super) fn command(line: &str) -> Result<(), Failure> {
 
 /// Things to choose from, each with its number.
 pub(super) fn list(things: &[String]) -> Result<(), Failure> {
-    for (number, thing) in (1..).zip(things) {
+    list_from(1, things).map(|_| ())
+}
+
+/// The same, where the first has this number; gives the number after the last.
+pub(super) fn list_from(first: usize, things: &[String]) -> Result<usize, Failure> {
+    for (number, thing) in (first..).zip(things) {
         writeln!(stdout(), "{}", hanging(&format!("  {number:2}  "), &printable(thing)))?;
     }
-    Ok(())
+    Ok(first + things.len())
 }
 
 impl Questions {

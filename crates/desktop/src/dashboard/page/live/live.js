@@ -9,7 +9,7 @@ import { Latency } from "./latency.js";
 import { Forces } from "../picture/meter.js";
 import { Finger, Plate } from "../picture/plate.js";
 import { rememberFold } from "../common/settings.js";
-import { stateInWords, Status } from "./status.js";
+import { beyondGames, stateInWords, Status } from "./status.js";
 
 const FIGURES_MS = 100;
 // A pad that cannot tell how sure a force is has this deviation: as much as the whole scale.
@@ -94,7 +94,7 @@ export class LiveView {
 
   setSketch({ profile, sketch }) {
     this.sketch = sketch;
-    say(this.title, `${profile}, ${sketch.output}`);
+    say(this.title, `${profile}, for a ${sketch.output}`);
     this.plate.setSketch(sketch);
     this.forces.setSketch(sketch);
   }
@@ -177,9 +177,10 @@ export class LiveView {
   sentences() {
     const { state, sentence, output } = this.message?.status ?? {};
     if (state === undefined) return ["tactpad does not answer."];
-    const plays = state === "playing" ? "tactpad plays: what is pressed goes on." : stateInWords({ state, sentence });
+    const beyond = beyondGames(output);
+    const plays = state === "playing" ? `tactpad plays${beyond === null ? ": what is pressed goes on" : "; no game gets it"}.` : stateInWords({ state, sentence });
     const help = state === "waiting" ? ["If it is plugged in, try another cable and another socket of this machine."] : [];
-    return [plays, ...help, this.lastTouch.sentence(this.sketch ?? null), `What is pressed goes to: ${output.startsWith("event log") ? "an event log, and no game" : output}.`];
+    return [plays, ...help, this.lastTouch.sentence(this.sketch ?? null), `What is pressed goes ${beyond ?? `to: ${output}`}.`];
   }
 
   #drawHeld({ held, held_names }) {

@@ -32,6 +32,9 @@ export function failure(sentence) {
   say(document.getElementById("failure"), sentence === "" ? "" : `✕ ${sentence}`);
 }
 
+/** Where presses go that reach no game; null where they reach one. @param {string} output */
+export const beyondGames = (output) => (output === "no output" ? "nowhere" : output.startsWith("event log") ? "to an event log" : null);
+
 /** What keeps presses back, and what to do. */
 export function stateInWords({ state, sentence }) {
   const why = capital(state === "paused" ? "paused: press Go on" : sentence ?? state);
@@ -43,15 +46,16 @@ export class Status {
 
   constructor() {
     this.sign = el("span", { class: "state-sign", "aria-hidden": "true" });
-    this.word = el("strong", { id: "state" });
+    this.word = el("strong", { id: "state", text: "loading" });
+    this.reach = el("span", { id: "reach" });
     this.sentence = el("p", { class: "state-sentence", hidden: true });
     this.lines = new Map([...PLAYED, ...SETUP].map(([key]) => [key, el("dd")]));
     this.setup = this.#list(SETUP);
     this.error = el("p", { class: "bad", hidden: true });
-    this.choice = el("select", { id: "profile-choice", class: "main", onchange: () => this.#choose() });
+    this.choice = el("select", { id: "profile-choice", class: "main", onchange: () => this.#choose() }, el("option", { text: "loading" }));
     this.pause = button("Pause", () => this.#pause(), { id: "pause", class: "main" });
-    document.getElementById("now").append(el("p", { class: "state" }, this.sign, this.word), this.pause);
-    this.node = el("div", { class: "card status" },
+    document.getElementById("now").append(el("p", { class: "state warn" }, this.sign, this.word, this.reach), this.pause);
+    this.node = el("div", { class: "card status", hidden: true },
       el("h3", { class: "unseen", text: "State" }),
       this.sentence,
       el("div", { class: "commands" },
@@ -105,6 +109,7 @@ export class Status {
 
   /** Shows a status message. */
   draw({ status }) {
+    this.node.hidden = false;
     if (status.state !== this.#state) this.#changed(status);
     this.#explain(GOOD.has(status.state) ? "" : stateInWords(status));
     for (const [key, node] of this.lines) {
@@ -123,6 +128,7 @@ export class Status {
     this.#state = null;
     say(this.sign, "✕");
     say(this.word, "not connected");
+    say(this.reach, "");
     this.#explain("");
     this.sign.parentElement.className = "state bad";
     for (const node of this.lines.values()) say(node, "–");
@@ -136,12 +142,14 @@ export class Status {
     say(this.sentence, sentence);
   }
 
-  #changed({ state, sentence }) {
+  #changed({ state, sentence, output }) {
     if (this.#state !== null) announce(sentence ?? state);
     this.#state = state;
     say(this.word, state);
     say(this.sign, SIGNS[state] ?? "?");
-    this.sign.parentElement.className = `state ${GOOD.has(state) ? "good" : BAD.has(state) ? "bad" : "warn"}`;
+    const isForNothing = GOOD.has(state) && beyondGames(output) !== null;
+    say(this.reach, isForNothing ? "reaches no game" : "");
+    this.sign.parentElement.className = `state ${isForNothing ? "warn" : GOOD.has(state) ? "good" : BAD.has(state) ? "bad" : "warn"}`;
     say(this.pause, state === "paused" ? "Go on" : "Pause");
   }
 

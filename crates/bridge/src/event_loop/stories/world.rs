@@ -67,8 +67,9 @@ pub(super) struct World {
     is_plugged: bool,
     is_stalled: bool,
     kept: Option<Vec<u8>>,
-    /// Since when the hub keeps it, and since when the pad has stalled.
+    /// Since when the hub keeps it, when the first of it came, and since when the pad has stalled.
     kept_from: HostInstant,
+    kept_first: HostInstant,
     stalled_from: HostInstant,
     /// The newest samples that the bridge has read, or that wait for it.
     read: VecDeque<Sample>,
@@ -137,6 +138,7 @@ impl World {
             is_stalled: false,
             kept: None,
             kept_from: HostInstant::default(),
+            kept_first: HostInstant::default(),
             stalled_from: HostInstant::default(),
             read: VecDeque::with_capacity(KNOWN),
             unconfirmed_restart_frames: 0,
@@ -341,6 +343,9 @@ impl World {
         let is_joined = std::mem::take(&mut self.is_joined);
         let sound = sound.filter(|_| !is_joined);
         if let Some(kept) = &mut self.kept {
+            if kept.is_empty() {
+                self.kept_first = self.play.now;
+            }
             if kept.len() + bytes.len() <= KEPT_MAX {
                 kept.extend_from_slice(bytes);
             }

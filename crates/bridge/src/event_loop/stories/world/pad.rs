@@ -3,6 +3,9 @@
 use super::*;
 use tactpad_core::pipeline::link::SILENCE_MAX_US;
 
+/// A pad whose samples come late is the same one if they go on from the last within this time, µs.
+const BRIDGED_US: u64 = 100_000;
+
 impl World {
     pub(super) fn happen_to_pad(&mut self, event: Event) -> Result<(), Broken> {
         let play = &mut self.play;
@@ -214,6 +217,11 @@ impl World {
         let Some(kept) = self.kept.take().filter(|kept| !kept.is_empty()) else { return Ok(()) };
         self.judge.delay_is_over(self.play.now, self.play.now.us_since(self.kept_from));
         self.judge.causes.note(self.play.now, Cause::Delayed);
+        let paused_us = self.judge.heard.map_or(0, |heard| self.kept_first.us_since(heard));
+        if paused_us > BRIDGED_US {
+            // One that stalled as well shows neither what has passed nor that it goes on: it may have begun anew.
+            self.note_zero_requested();
+        }
         if self.frozen_until.is_some() {
             if self.is_open() {
                 kept.chunks(64).all(|bytes| self.play.buffer(bytes));

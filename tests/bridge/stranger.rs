@@ -1,8 +1,8 @@
 //! A pad that knows nothing but the wire specification, played through `tactpad run`.
 //!
 //! `stranger/pad.py` builds its frames from `firmware-proto/README.md` alone. What the event log must hold is worked
-//! out by hand here, from the numbers in `mappings/*.toml`. All four shipped profiles take `filter_samples = 6`: when
-//! a force steps from 0 to F, sample k of the step (k = 1 to 6) counts as F · k / 6, and falls the same way.
+//! out by hand here, from the numbers in `mappings/*.toml`. All four shipped profiles take `filter_samples = 6` and `filter_adapts`: when
+//! a force steps from 0 to F, the first sample of the step counts as F / 6 and the second as F, and falls the same way.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
 
@@ -79,73 +79,73 @@ const AT_85_DEG: (f32, f32) = (1.3073, 14.9429);
 
 /// Four sectors of 90° that reach 8° further while they hold; the press is 2 N, the direction 0.3 N.
 const SUPER_MARIO: &[Step] = &[
-    press(RIGHT, 1.0, 300, &[(1, X, 1), (304, X, 0)]),
+    press(RIGHT, 1.0, 300, &[(1, X, 1), (301, X, 0)]),
     press(UP, 0.29, 200, &[]),
-    press(DOWN, 0.31, 200, &[(5, Y, 1), (202, Y, 0)]),
+    press(DOWN, 0.31, 200, &[(1, Y, 1), (201, Y, 0)]),
     // Seven millimetres are inside the centre, where no direction counts; ten are not.
     press((7.0, 0.0), 1.0, 100, &[]),
-    press((10.0, 0.0), 1.0, 100, &[(1, X, 1), (104, X, 0)]),
+    press((10.0, 0.0), 1.0, 100, &[(1, X, 1), (101, X, 0)]),
     // Just too light to press, and just enough. The tap comes when it is over, and lasts 40 ms.
-    press(LEFT, 1.9, 200, &[(0, X, -1), (205, X, 0)]),
+    press(LEFT, 1.9, 200, &[(0, X, -1), (201, X, 0)]),
     press(CENTRE, 1.95, 100, &[]),
     press(CENTRE, 2.05, 100, &[(101, SOUTH, 1), (141, SOUTH, 0)]),
-    press(UP, 3.2, 200, &[(0, Y, -1), (203, SOUTH, 1), (205, Y, 0), (243, SOUTH, 0)]),
+    press(UP, 3.2, 200, &[(0, Y, -1), (201, Y, 0), (201, SOUTH, 1), (241, SOUTH, 0)]),
     // Pressed for a little less than 400 ms, a little more, and much more.
-    press(RIGHT, 3.2, 395, &[(0, X, 1), (398, SOUTH, 1), (400, X, 0), (438, SOUTH, 0)]),
-    press(RIGHT, 3.2, 405, &[(0, X, 1), (403, EAST, 1), (410, X, 0), (443, EAST, 0)]),
-    press(DOWN, 3.2, 600, &[(0, Y, 1), (403, EAST, 1), (603, EAST, 0), (605, Y, 0)]),
+    press(RIGHT, 3.2, 395, &[(0, X, 1), (396, X, 0), (396, SOUTH, 1), (436, SOUTH, 0)]),
+    press(RIGHT, 3.2, 405, &[(0, X, 1), (401, EAST, 1), (406, X, 0), (441, EAST, 0)]),
+    press(DOWN, 3.2, 600, &[(0, Y, 1), (401, EAST, 1), (601, Y, 0), (601, EAST, 0)]),
     // The border at 45° is 53° on the way up and 37° on the way back.
     roll(RIGHT, &[(1, X, 1)]),
     roll(AT_50_DEG, &[]),
     roll(AT_65_DEG, &[(1, X, 0), (1, Y, -1)]),
     roll(AT_40_DEG, &[]),
-    press(AT_25_DEG, 1.0, 100, &[(1, Y, 0), (1, X, 1), (104, X, 0)]),
+    press(AT_25_DEG, 1.0, 100, &[(1, Y, 0), (1, X, 1), (101, X, 0)]),
 ];
 
 /// Four sectors of 60° with zones of 30° between them, where the last direction stays.
 const TETRIS: &[Step] = &[
-    press(LEFT, 1.0, 100, &[(1, X, -1), (104, X, 0)]),
-    press(RIGHT, 1.0, 100, &[(1, X, 1), (104, X, 0)]),
-    press(DOWN, 1.0, 300, &[(1, Y, 1), (304, Y, 0)]),
+    press(LEFT, 1.0, 100, &[(1, X, -1), (101, X, 0)]),
+    press(RIGHT, 1.0, 100, &[(1, X, 1), (101, X, 0)]),
+    press(DOWN, 1.0, 300, &[(1, Y, 1), (301, Y, 0)]),
     press(UP, 0.29, 100, &[]),
-    press(UP, 0.31, 100, &[(5, Y, -1), (102, Y, 0)]),
+    press(UP, 0.31, 100, &[(1, Y, -1), (101, Y, 0)]),
     press(CENTRE, 1.95, 100, &[]),
     press(CENTRE, 2.05, 100, &[(101, SOUTH, 1), (141, SOUTH, 0)]),
-    press(CENTRE, 3.2, 500, &[(403, EAST, 1), (503, EAST, 0)]),
+    press(CENTRE, 3.2, 500, &[(401, EAST, 1), (501, EAST, 0)]),
     // A short stab at a side: the direction, too, is held for 40 ms.
     press(LEFT, 1.0, 20, &[(1, X, -1), (41, X, 0)]),
     roll(RIGHT, &[(1, X, 1)]),
     roll(AT_55_DEG, &[]),
     roll(AT_75_DEG, &[(1, X, 0), (1, Y, -1)]),
     roll(AT_35_DEG, &[]),
-    press(AT_15_DEG, 1.0, 100, &[(1, Y, 0), (1, X, 1), (104, X, 0)]),
+    press(AT_15_DEG, 1.0, 100, &[(1, Y, 0), (1, X, 1), (101, X, 0)]),
 ];
 
 /// As Tetris; at the end the line breaks while the thumb still steers and presses.
 const TANK_BATTLE: &[Step] = &[
-    press(UP, 1.0, 100, &[(1, Y, -1), (104, Y, 0)]),
-    press(LEFT, 1.95, 100, &[(0, X, -1), (105, X, 0)]),
-    press(LEFT, 2.05, 100, &[(0, X, -1), (101, SOUTH, 1), (105, X, 0), (141, SOUTH, 0)]),
-    press(DOWN, 3.2, 395, &[(0, Y, 1), (398, SOUTH, 1), (400, Y, 0), (438, SOUTH, 0)]),
-    press(DOWN, 3.2, 450, &[(0, Y, 1), (403, EAST, 1), (453, EAST, 0), (455, Y, 0)]),
+    press(UP, 1.0, 100, &[(1, Y, -1), (101, Y, 0)]),
+    press(LEFT, 1.95, 100, &[(0, X, -1), (101, X, 0)]),
+    press(LEFT, 2.05, 100, &[(0, X, -1), (101, X, 0), (101, SOUTH, 1), (141, SOUTH, 0)]),
+    press(DOWN, 3.2, 395, &[(0, Y, 1), (396, Y, 0), (396, SOUTH, 1), (436, SOUTH, 0)]),
+    press(DOWN, 3.2, 450, &[(0, Y, 1), (401, EAST, 1), (451, Y, 0), (451, EAST, 0)]),
     roll(UP, &[(1, Y, -1)]),
     roll(AT_35_DEG, &[]),
     roll(AT_15_DEG, &[(1, Y, 0), (1, X, 1)]),
     roll(AT_55_DEG, &[]),
-    press(AT_75_DEG, 1.0, 100, &[(1, X, 0), (1, Y, -1), (104, Y, 0)]),
-    Step { rest_ms: 0, ..press(RIGHT, 3.2, 600, &[(0, X, 1), (403, EAST, 1)]) },
+    press(AT_75_DEG, 1.0, 100, &[(1, X, 0), (1, Y, -1), (101, Y, 0)]),
+    Step { rest_ms: 0, ..press(RIGHT, 3.2, 600, &[(0, X, 1), (401, EAST, 1)]) },
 ];
 
 /// Eight sectors of 45° that reach 8° further while they hold; a press jumps at once, a push forward fires.
 const CONTRA: &[Step] = &[
-    press(RIGHT, 3.2, 100, &[(0, X, 1), (3, SOUTH, 1), (103, SOUTH, 0), (105, X, 0)]),
-    press(AT_45_DEG, 1.0, 100, &[(1, X, 1), (1, Y, -1), (104, X, 0), (104, Y, 0)]),
-    press(LEFT, 1.95, 100, &[(0, X, -1), (105, X, 0)]),
-    press(CENTRE, 2.05, 100, &[(5, SOUTH, 1), (101, SOUTH, 0)]),
+    press(RIGHT, 3.2, 100, &[(0, X, 1), (1, SOUTH, 1), (101, X, 0), (101, SOUTH, 0)]),
+    press(AT_45_DEG, 1.0, 100, &[(1, X, 1), (1, Y, -1), (101, X, 0), (101, Y, 0)]),
+    press(LEFT, 1.95, 100, &[(0, X, -1), (101, X, 0)]),
+    press(CENTRE, 2.05, 100, &[(1, SOUTH, 1), (101, SOUTH, 0)]),
     // Fire: 1.2 N along +y, in no other direction.
-    push(CENTRE, (0.0, 1.9, 1.0), 100, &[(3, EAST, 1), (103, EAST, 0)]),
+    push(CENTRE, (0.0, 1.9, 1.0), 100, &[(1, EAST, 1), (101, EAST, 0)]),
     push(CENTRE, (0.0, 1.17, 1.0), 100, &[]),
-    push(CENTRE, (0.0, 1.23, 1.0), 100, &[(5, EAST, 1), (102, EAST, 0)]),
+    push(CENTRE, (0.0, 1.23, 1.0), 100, &[(1, EAST, 1), (101, EAST, 0)]),
     push(CENTRE, (0.0, -1.9, 1.0), 100, &[]),
     push(CENTRE, (1.9, 0.0, 1.0), 100, &[]),
     // Run, jump and fire at once; then a stab of 10 ms, after which everything is held for 40 ms.
@@ -153,29 +153,29 @@ const CONTRA: &[Step] = &[
         LEFT,
         (0.0, 1.9, 3.2),
         300,
-        &[(0, X, -1), (3, SOUTH, 1), (3, EAST, 1), (303, SOUTH, 0), (303, EAST, 0), (305, X, 0)],
+        &[(0, X, -1), (1, SOUTH, 1), (1, EAST, 1), (301, X, 0), (301, SOUTH, 0), (301, EAST, 0)],
     ),
     push(
         DOWN,
         (0.0, 1.9, 3.2),
         10,
-        &[(0, Y, 1), (3, SOUTH, 1), (3, EAST, 1), (40, Y, 0), (43, SOUTH, 0), (43, EAST, 0)],
+        &[(0, Y, 1), (1, SOUTH, 1), (1, EAST, 1), (40, Y, 0), (41, SOUTH, 0), (41, EAST, 0)],
     ),
     // Right, right and up, up: the borders at 22.5° and 67.5° are 30.5° and 75.5° on the way.
     roll(RIGHT, &[(1, X, 1)]),
     roll(AT_25_DEG, &[]),
-    roll(AT_40_DEG, &[(2, Y, -1)]),
+    roll(AT_40_DEG, &[(1, Y, -1)]),
     roll(AT_70_DEG, &[]),
-    press(AT_85_DEG, 1.0, 100, &[(2, X, 0), (104, Y, 0)]),
+    press(AT_85_DEG, 1.0, 100, &[(1, X, 0), (101, Y, 0)]),
 ];
 
 /// Contra on a keyboard: the same, with arrow keys.
 const CONTRA_KEYS: &[Step] = &[
-    press(RIGHT, 3.2, 100, &[(0, "KEY_RIGHT", 1), (3, "KEY_Z", 1), (103, "KEY_Z", 0), (105, "KEY_RIGHT", 0)]),
-    press(LEFT, 1.0, 100, &[(1, "KEY_LEFT", 1), (104, "KEY_LEFT", 0)]),
-    press(UP, 1.0, 100, &[(1, "KEY_UP", 1), (104, "KEY_UP", 0)]),
-    press(DOWN, 1.0, 100, &[(1, "KEY_DOWN", 1), (104, "KEY_DOWN", 0)]),
-    push(CENTRE, (0.0, 1.9, 1.0), 100, &[(3, "KEY_X", 1), (103, "KEY_X", 0)]),
+    press(RIGHT, 3.2, 100, &[(0, "KEY_RIGHT", 1), (1, "KEY_Z", 1), (101, "KEY_RIGHT", 0), (101, "KEY_Z", 0)]),
+    press(LEFT, 1.0, 100, &[(1, "KEY_LEFT", 1), (101, "KEY_LEFT", 0)]),
+    press(UP, 1.0, 100, &[(1, "KEY_UP", 1), (101, "KEY_UP", 0)]),
+    press(DOWN, 1.0, 100, &[(1, "KEY_DOWN", 1), (101, "KEY_DOWN", 0)]),
+    push(CENTRE, (0.0, 1.9, 1.0), 100, &[(1, "KEY_X", 1), (101, "KEY_X", 0)]),
 ];
 
 /// The event log that the steps must come to, line for line.

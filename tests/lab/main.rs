@@ -4,6 +4,7 @@ mod ablation;
 mod bench;
 mod calibration;
 mod changes;
+mod fingertip;
 mod force_range;
 #[cfg(feature = "foreign-onnx")]
 mod foreign;

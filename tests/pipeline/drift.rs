@@ -14,6 +14,7 @@ use tactpad::pipeline::contact::watch::Warning;
 use tactpad::pipeline::health::Health;
 use tactpad::pipeline::probe::NoProbe;
 use tactpad::pipeline::shipped;
+use tactpad::pipeline::signal::filter::MeanFilter;
 use tactpad::quantity::{CHANNELS, Contact};
 use tactpad::time::StreamInstant;
 
@@ -47,7 +48,7 @@ impl Drifting {
         let sign = if random.fraction() < 0.5 { -1.0 } else { 1.0 };
         let uv_per_s = sign * (20.0 + 40.0 * random.fraction());
         Self {
-            stage: ContactStage::new(decoder, 6),
+            stage: ContactStage::new(decoder, MeanFilter::new(6)),
             health: Health::default(),
             field: PadField::nominal().signals,
             random,

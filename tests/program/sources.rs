@@ -114,7 +114,7 @@ fn a_profile_that_asks_for_shear_is_warned_of_with_its_line() {
     let output = tactpad(folder.path(), "run --pad load-cells:/no-such-port --profile contra --output none");
     let told = text(&output.stderr);
     assert!(
-        told.contains("contra:30:9: warning: \"force\" is \"fy\"") && told.contains("no force along"),
+        told.contains("contra:31:9: warning: \"force\" is \"fy\"") && told.contains("no force along"),
         "{told}"
     );
 }
@@ -140,10 +140,10 @@ fn a_profile_that_is_asked_for_or_changed_later_is_warned_of_as_well() {
     };
     until("load-cells:no-such-port");
     fs::write(&mine, contra).unwrap();
-    until("mine.toml:30:9: warning: \"force\" is \"fy\", and this pad measures no force along");
+    until("mine.toml:31:9: warning: \"force\" is \"fy\", and this pad measures no force along");
     until("its file was changed");
     assert!(program("ctl profile contra").status().unwrap().success());
-    until("contra:30:9: warning: \"force\" is \"fy\", and this pad measures no force along");
+    until("contra:31:9: warning: \"force\" is \"fy\", and this pad measures no force along");
     bridge.kill().unwrap();
     bridge.wait().unwrap();
 }

@@ -48,7 +48,7 @@ pub struct StageTimes {
 /// Delays that a profile asks for; no part of the processing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ProfileDelays {
-    /// The mean filter's: half of its window.
+    /// The mean filter's: half of its window, or a sample where it adapts.
     pub filter: f64,
     /// Until a press is long, or can no longer become a double or a hard one.
     pub hold: f64,
@@ -61,7 +61,6 @@ pub struct ProfileDelays {
 impl ProfileDelays {
     /// Delays in milliseconds of a profile whose samples are `period_us` apart.
     pub fn of(profile: &Profile, period_us: u64) -> Self {
-        let window = profile.filter_samples.max(1);
         let hold_us = profile.buttons.iter().map(|button| match button.action {
             Action::ByTime { double, hold, .. } => [double, hold].into_iter().flatten().map(|it| it.us).max(),
             Action::ByForce { skip: Skip::May { us } | Skip::Must { us }, .. } => Some(us),
@@ -70,7 +69,7 @@ impl ProfileDelays {
         let dwell_us = profile.buttons.iter().filter_map(|button| Some(button.dwell?.us));
         let slow_us = dwell_us.chain([profile.access.slow_us]).max().unwrap_or(0);
         Self {
-            filter: (window - 1) as f64 / 2.0 * period_us as f64 * 1e-3,
+            filter: profile.filter_delay_samples() * period_us as f64 * 1e-3,
             hold: hold_us.flatten().max().unwrap_or(0) as f64 * 1e-3,
             slow: slow_us as f64 * 1e-3,
             tremor: profile.access.tremor.map_or(0.0, |tremor| f64::from(tremor.delay_s()) * 1e3),

@@ -84,7 +84,7 @@ impl Pipeline {
     pub fn new(decoder: Decoder, profile: Profile) -> Self {
         Self {
             link: Link::new(),
-            stage: ContactStage::new(decoder, profile.filter_samples),
+            stage: ContactStage::new(decoder, profile.filter()),
             ledger: Ledger::new(&profile),
             engine: Engine::new(profile),
             health: Health::default(),
@@ -234,7 +234,7 @@ impl Pipeline {
         self.begin();
         self.advance(self.link.stream_at(now));
         self.ledger.change_profile(self.at, &profile, &mut self.edges);
-        self.stage.set_filter_samples(profile.filter_samples);
+        self.stage.set_filter(profile.filter());
         self.engine.replace_profile(profile);
         // Without a contact nothing is stated, and the engine must not take that for a lift: see `map`.
         if self.contact.is_some() {

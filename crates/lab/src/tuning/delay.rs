@@ -5,7 +5,7 @@ use tactpad_core::pipeline::mapping::profile::{Action, Button, Profile, Skip};
 /// The longest that a profile lets an action wait beyond what the finger does, for a pad whose samples are `period_us` apart:
 ///
 /// ```text
-/// all          half of the filter's window: (filter_samples − 1)/2 samples
+/// all          half of the filter's window: (filter_samples − 1)/2 samples, or one with filter_adapts
 /// direction    and slow_ms, and the tremor filter's lag at rest: 1/(2π tremor_hz)
 /// button       and slow_ms, or dwell_ms where that is more; for a tap with "double" also double_press_ms,
 ///              for a light press that may turn hard also skip_ms
@@ -13,7 +13,7 @@ use tactpad_core::pipeline::mapping::profile::{Action, Button, Profile, Skip};
 ///
 /// How long a press must last to be long is what the player does, and no delay.
 pub fn delay_us(profile: &Profile, period_us: u64) -> u64 {
-    let filter_us = profile.filter_samples.saturating_sub(1) as u64 * period_us / 2;
+    let filter_us = (profile.filter_delay_samples() * period_us as f64) as u64;
     let lag_us = profile.access.tremor.map_or(0, |tremor| (f64::from(tremor.delay_s()) * 1e6).round() as u64);
     let places_us = match (&profile.dpad, &profile.pointer) {
         (Some(_), _) => lag_us + profile.access.slow_us,

@@ -18,6 +18,7 @@ use crate::pipeline::health::Health;
 use crate::pipeline::interruption::{Cause, Effect, Effects};
 use crate::pipeline::link::reading::{Measured, Reading};
 use crate::pipeline::probe::{PipelineStage, Probe};
+use crate::pipeline::signal::filter::MeanFilter;
 use crate::pipeline::signal::{Conditioned, Loads, PadState, Scale, Signal};
 use crate::quantity::{CHANNELS, Contact, Strain};
 use crate::time::StreamInstant;
@@ -70,14 +71,14 @@ pub struct ContactStage {
 }
 
 impl ContactStage {
-    /// A stage that has seen nothing: it measures its zero first. `filter_samples` is the mean filter's window.
-    pub fn new(decoder: Decoder, filter_samples: usize) -> Self {
+    /// A stage that has seen nothing: it measures its zero first. The mean filter has seen nothing either.
+    pub fn new(decoder: Decoder, filter: MeanFilter) -> Self {
         Self {
             signal: Signal::new(
                 decoder.channels(),
                 decoder.is_clamped(),
                 decoder.scale().unwrap_or_else(Scale::unidentified),
-                filter_samples,
+                filter,
             ),
             gain: CommonGain::ONE,
             thermometer: Thermometer::of(decoder.compensation.thermal),
@@ -154,9 +155,9 @@ impl ContactStage {
         self.memory.rescale(1.0 / ratio);
     }
 
-    /// Changes the filter's window; it grows anew from one sample.
-    pub fn set_filter_samples(&mut self, filter_samples: usize) {
-        self.signal.set_filter_samples(filter_samples);
+    /// Changes the filter; its window grows anew from one sample.
+    pub fn set_filter(&mut self, filter: MeanFilter) {
+        self.signal.set_filter(filter);
     }
 
     /// Takes the scale that a pad told; false if it was thought to be that anyway. It means an interruption, which the caller

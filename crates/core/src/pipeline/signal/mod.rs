@@ -91,15 +91,15 @@ pub struct Signal {
 
 impl Signal {
     /// A stage that has seen nothing of a pad with so many channels, of which 0 may be the least that they tell: it measures its zero first.
-    /// `untold_scale` holds unless the pad tells another, and `filter_samples` is the mean filter's window.
-    pub fn new(channels: usize, is_clamped: bool, untold_scale: Scale, filter_samples: usize) -> Self {
+    /// `untold_scale` holds unless the pad tells another, and the mean filter has seen nothing either.
+    pub fn new(channels: usize, is_clamped: bool, untold_scale: Scale, filter: MeanFilter) -> Self {
         Self {
             scale: untold_scale,
             untold_scale,
             channels,
             is_clamped,
             faults: ChannelFaults::new(channels, is_clamped),
-            filter: MeanFilter::new(filter_samples),
+            filter,
             tare: Tare::new(channels < CHANNELS),
             zero_age: 0,
             is_zero_partial: false,
@@ -111,9 +111,9 @@ impl Signal {
         self.scale
     }
 
-    /// Changes the filter's window; it grows anew from one sample.
-    pub fn set_filter_samples(&mut self, filter_samples: usize) {
-        self.filter = MeanFilter::new(filter_samples);
+    /// Changes the filter; its window grows anew from one sample.
+    pub fn set_filter(&mut self, filter: MeanFilter) {
+        self.filter = filter;
     }
 
     /// Takes the scale of a pad that identified itself; false if it was that anyway. A different scale means a different zero,

@@ -84,6 +84,7 @@ pub const SETTINGS: &[Setting] = &[
     plain("name", "name"),
     plain("output", "what is played"),
     number("filter_samples", "smoothing", Unit::Sample),
+    plain("filter_adapts", "no smoothing over quick changes"),
     number("min_press_ms", "shortest press", Unit::Millisecond),
     plain("left_handed", "left-handed"),
     number("centre_x_mm", "middle of the hand, to the right", Unit::Millimetre),

@@ -28,6 +28,7 @@ pub use self::labels::{Labelled, Labels};
 pub use self::place::{ButtonPlace, Direction, Dpad, DpadMode, Gain, Pointer, PointerMode, Zone};
 pub use self::program::Program;
 use crate::pipeline::control::{Code, OutputDevice};
+use crate::pipeline::signal::filter::MeanFilter;
 
 /// The most buttons a profile can bind.
 pub const BUTTONS_MAX: usize = 16;
@@ -144,6 +145,8 @@ pub struct Profile {
     pub output: OutputDevice,
     /// Window of the mean filter, in samples.
     pub filter_samples: usize,
+    /// Whether the mean begins anew where the load changes.
+    pub filter_adapts: bool,
     /// An output, once down, stays down at least this long, so that a game that polls once a frame sees it.
     pub min_press_us: u64,
     /// Help for hands that press what they do not mean.
@@ -173,6 +176,18 @@ pub struct Profile {
 }
 
 impl Profile {
+    /// The mean filter, before the first sample.
+    pub fn filter(&self) -> MeanFilter {
+        let new = if self.filter_adapts { MeanFilter::adaptive } else { MeanFilter::new };
+        new(self.filter_samples)
+    }
+
+    /// By how much it delays a finger that comes, in samples: half of its window, or where it adapts one at most.
+    pub fn filter_delay_samples(&self) -> f64 {
+        let half = self.filter_samples.saturating_sub(1) as f64 / 2.0;
+        if self.filter_adapts { half.min(1.0) } else { half }
+    }
+
     /// Whether the profile plays on `device`, so that it must be there.
     pub fn uses(&self, device: OutputDevice) -> bool {
         let moved = self.pointer.map(|pointer| match pointer.mode {

@@ -41,12 +41,13 @@ pub enum OutputChoice {
 const OUTPUTS: [(&str, OutputDevice); 2] =
     [("gamepad", OutputDevice::Gamepad), ("keyboard", OutputDevice::Keyboard)];
 
-const ROOT_KEYS: [&str; 19] = [
+const ROOT_KEYS: [&str; 20] = [
     "schema",
     "name",
     "program",
     "output",
     "filter_samples",
+    "filter_adapts",
     "min_press_ms",
     "left_handed",
     "centre_x_mm",
@@ -105,6 +106,7 @@ struct ProfileDraft {
     programs: Vec<Program>,
     output: Option<OutputDevice>,
     filter_samples: Option<usize>,
+    filter_adapts: Option<bool>,
     min_press_ms: Option<u32>,
     left_handed: Option<bool>,
     access: Option<Access>,
@@ -153,10 +155,9 @@ impl ProfileDraft {
             filter_samples: root
                 .whole("filter_samples", FILTER_SAMPLES, findings)
                 .map(|count| count.value as usize),
+            filter_adapts: read_flag(root, "filter_adapts", findings),
             min_press_ms,
-            left_handed: root
-                .place_of("left_handed")
-                .map_or(Some(false), |_| root.flag("left_handed", findings)),
+            left_handed: read_flag(root, "left_handed", findings),
             access: access.map_or(Some(Access::default()), |access| access::read(&access, findings)),
             centre_mm: plate::read_centre(root, findings),
             gain: gain.map_or(Some(Gain::ONE), |gain| plate::read_gain(&gain, findings)),
@@ -205,6 +206,7 @@ impl ProfileDraft {
             programs: self.programs,
             output,
             filter_samples: self.filter_samples?,
+            filter_adapts: self.filter_adapts?,
             min_press_us: u64::from(self.min_press_ms?) * 1_000,
             access: self.access?,
             centre_mm: self.centre_mm?,
@@ -241,6 +243,11 @@ fn check_counts(root: &Section<'_>, buttons: &[Section<'_>], findings: &mut Find
 fn played<T, const N: usize>(all: Vec<Option<T>>, output: OutputDevice) -> Option<ArrayVec<T, N>> {
     let all = all.into_iter().collect::<Option<Vec<T>>>()?;
     Some(all.into_iter().filter(|_| output == OutputDevice::Gamepad).take(N).collect())
+}
+
+/// A flag that is off where it is not written.
+fn read_flag(root: &Section<'_>, key: &'static str, findings: &mut Findings<'_>) -> Option<bool> {
+    root.place_of(key).map_or(Some(false), |_| root.flag(key, findings))
 }
 
 fn read_schema(root: &Section<'_>, findings: &mut Findings<'_>) {

@@ -3,8 +3,8 @@
 //! Source: Sensors 2026, 26, 1378, section 3.1: y_i = (1/i) Σ x_j for i < W, then (1/W) Σ over the last W. It cuts
 //! white noise by √W and delays by (W − 1)/2 samples; it does not suppress drift.
 //!
-//! An adaptive one leaves out of the mean what was before a change of the load, which shows in two samples: so it delays a finger that comes by
-//! about one, and what rests by nothing, for there is nothing to delay.
+//! An adaptive one leaves out of the mean what was before a change of the load, which shows in two samples: a finger that comes quickly is
+//! delayed by half a sample, and what rests is as calm as behind the plain mean.
 
 use crate::quantity::CHANNELS;
 

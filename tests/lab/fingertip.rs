@@ -1,5 +1,6 @@
 //! From the fingertip: how long after the true force crosses a button's threshold its event comes, and how often one comes that nobody meant.
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
+#![allow(clippy::disallowed_methods, reason = "a force may differ in its last bit from platform to platform")]
 #![allow(clippy::print_stdout, reason = "the figures are what one looks for")]
 
 use firmware_proto::ENCODED_MAX;
@@ -84,7 +85,7 @@ fn script(player: &Player, seed: u64) -> (Script, Vec<Press>) {
         keyframes.push(Keyframe {
             at_us,
             contact: Contact { x_mm: place[0], y_mm: place[1], fz_n, ..Contact::default() },
-        })
+        });
     };
     let us = |random: &mut SplitMix64, [a, b]: [f32; 2]| (1e3 * (a + (b - a) * random.fraction())) as u64;
     put(0, 0.0, [0.0; 2]);

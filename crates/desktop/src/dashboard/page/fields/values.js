@@ -31,6 +31,12 @@ function derived(sketch, path) {
   return undefined;
 }
 
+/** Where a let-go force has to follow its press force down: the change; `beside` gives what holds of the same table. @returns {import("../profile/draft.js").Change[]} */
+export function letGoBelow(table, key, press_n, beside) {
+  const release_n = key in LET_GO ? beside(LET_GO[key]) : undefined;
+  return release_n > press_n - GAP_N ? [{ table, key: LET_GO[key], value: tidy(Math.round(LET_GO_SHARE * press_n * 100) / 100) }] : [];
+}
+
 export class Values {
   /** @param {import("../profile/draft.js").Draft} draft @param {import("./schema.js").Schema} schema */
   constructor(draft, schema) {
@@ -58,8 +64,7 @@ export class Values {
   }
 
   #letGo(table, key, press_n) {
-    const path = [...table, LET_GO[key]];
-    return key in LET_GO && this.isWritten(path) && this.at(path) > press_n - GAP_N ? [{ table, key: LET_GO[key], value: tidy(Math.round(LET_GO_SHARE * press_n * 100) / 100) }] : [];
+    return letGoBelow(table, key, press_n, (beside) => written(this.draft.document, [...table, beside]));
   }
 
   #rivals(table, key) {

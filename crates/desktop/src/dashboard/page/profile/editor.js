@@ -90,6 +90,7 @@ export class ProfileView {
         this.#playChanges(false);
         this.#showDraft(sentence, text);
       },
+      hush: () => this.#tell(""),
       text: () => this.draft.text,
       open: (name) => this.#reopen(name),
       mayDrop: async () => !this.draft.dirty || await askDrop(this.#name) === true,

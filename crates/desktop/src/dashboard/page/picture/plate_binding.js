@@ -3,13 +3,13 @@
 import { Capture } from "../fields/capture.js";
 import { partsAt, reached } from "./touch.js";
 import { announce } from "../common/announce.js";
-import { button, el, say, set } from "../common/dom.js";
+import { button, el, say } from "../common/dom.js";
 import { controlsInWords } from "../common/words.js";
 
 const UNCHANGED = "Nothing was changed.";
-const LABEL = "Change what a place presses";
+const LABEL = "Give a place another button …";
 const WHICH = "Which one?";
-const WHERE = "First the place: click it in the picture, or press there on the pad. It stays where it is, and gets another key or button. Escape ends this.";
+const WHERE = "First the place: click it in the picture, or press there on the pad. It stays where it is, and gets another key or button. Cancel or Escape ends this.";
 /** What turns on, moves, and leaves is the page's, not the game's. */
 const FREE_KEYS = new Set(["Tab", "Shift"]);
 
@@ -40,6 +40,9 @@ export class PlateBinding {
   /** What the pad felt most of since it was touched. */
   #pressed = null;
   #state = "off";
+  /** A finger that lay there before the question was put is no answer. */
+  #isAwaited = false;
+  #isTouched = false;
 
   /**
    * @param {import("./plate.js").Plate} plate
@@ -48,7 +51,7 @@ export class PlateBinding {
    */
   constructor(plate, values, pick) {
     Object.assign(this, { plate, values, pick });
-    this.start = button(LABEL, () => (this.#state === "off" ? this.#ask() : this.#leave()), { id: "bind", class: "main", "aria-pressed": "false" });
+    this.start = button(LABEL, () => (this.#state === "off" ? this.#ask() : this.#leave()), { id: "bind", class: "main" });
     this.said = el("p", { class: "small" });
     this.choices = el("div", { class: "commands" });
     this.node = el("div", { class: "binding" }, this.start, this.said, this.choices);
@@ -78,7 +81,8 @@ export class PlateBinding {
   #go(state, sentence) {
     this.#state = state;
     this.#pressed = null;
-    set(this.start, { "aria-pressed": String(state !== "off") });
+    this.#isAwaited = !this.#isTouched;
+    say(this.start, state === "off" ? LABEL : "Cancel");
     this.plate.node.classList.toggle("asks", state === "where");
     this.choices.replaceChildren();
     say(this.said, sentence);
@@ -106,7 +110,9 @@ export class PlateBinding {
 
   /** Follows the pad, frame by frame: a press is over once nothing is held any more. */
   take({ trace, contact, held }) {
-    if (!this.#asks) return;
+    this.#isTouched = contact !== null;
+    this.#isAwaited ||= !this.#isTouched;
+    if (!this.#asks || !this.#isAwaited) return;
     for (const [, x_mm, y_mm, fx_n, fy_n, fz_n] of trace.filter((point) => point.length > 1)) {
       const most = Math.max(fz_n, Math.abs(fx_n), Math.abs(fy_n));
       if (this.#pressed === null || most > this.#pressed.most) this.#pressed = { x_mm, y_mm, fx_n, fy_n, fz_n, most };

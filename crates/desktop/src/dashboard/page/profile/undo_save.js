@@ -164,7 +164,7 @@ class Undoing {
   /** A let-go force follows its press force down. */
   #keepLetGo() {
     for (const { table, key, value } of [...this.changes]) {
-      for (const change of letGoBelow(table, key, value, (beside) => at(this.document, [...table, beside]))) {
+      for (const change of letGoBelow([...table, key], value, (beside) => at(this.document, [...table, beside]))) {
         const path = [...table, change.key];
         this.done.push({ what: this.#words(path), is: `is ${valueInWords(path, change.value)}`, had: null });
         this.#set(path, change.value);

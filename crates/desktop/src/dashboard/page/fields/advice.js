@@ -33,8 +33,7 @@ function resting(path, values) {
   if (path.at(-1) === "min_force_n" && values.at(path) < rest_n) return { sentence: `A resting hand is ignored, so a touch counts from ${rest_n} N on, above what rests.` };
   if (path.join(".") !== "access.rest_n") return null;
   const per_s = number((1000 * rest_n) / rest_ms, 2).replace(/\.?0+$/, "");
-  return { sentence: `Now: what grows by less than ${per_s} N in a second rests and is no touch, however strong it becomes. What comes quicker counts from ${rest_n} N on, above what rests; `
-    + `that holds for directions, too, whose own touch force is lower. For a slower hand raise “${settingAt(["access", "rest_ms"]).word}”.` };
+  return { sentence: `Now: what grows by less than ${per_s} N in a second rests. What comes quicker counts from ${rest_n} N on, above what rests, for directions, too. For a slower hand raise “${settingAt(["access", "rest_ms"]).word}”.` };
 }
 
 /** "your last press: 0.86 N" at a force that a press is compared with; null at any other field. @returns {((touch: import("../live/last_touch.js").LastTouch) => string) | null} */

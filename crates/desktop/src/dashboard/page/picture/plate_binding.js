@@ -40,9 +40,6 @@ export class PlateBinding {
   /** What the pad felt most of since it was touched. */
   #pressed = null;
   #state = "off";
-  /** A finger that lay there before the question was put is no answer. */
-  #isAwaited = false;
-  #isTouched = false;
 
   /**
    * @param {import("./plate.js").Plate} plate
@@ -81,7 +78,6 @@ export class PlateBinding {
   #go(state, sentence) {
     this.#state = state;
     this.#pressed = null;
-    this.#isAwaited = !this.#isTouched;
     say(this.start, state === "off" ? LABEL : "Cancel");
     this.plate.node.classList.toggle("asks", state === "where");
     this.choices.replaceChildren();
@@ -110,9 +106,7 @@ export class PlateBinding {
 
   /** Follows the pad, frame by frame: a press is over once nothing is held any more. */
   take({ trace, contact, held }) {
-    this.#isTouched = contact !== null;
-    this.#isAwaited ||= !this.#isTouched;
-    if (!this.#asks || !this.#isAwaited) return;
+    if (!this.#asks) return;
     for (const [, x_mm, y_mm, fx_n, fy_n, fz_n] of trace.filter((point) => point.length > 1)) {
       const most = Math.max(fz_n, Math.abs(fx_n), Math.abs(fy_n));
       if (this.#pressed === null || most > this.#pressed.most) this.#pressed = { x_mm, y_mm, fx_n, fy_n, fz_n, most };

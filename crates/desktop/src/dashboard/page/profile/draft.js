@@ -142,7 +142,7 @@ export class Draft extends EventTarget {
     }
     if (!answer.error && answer.text !== text) {
       this.text = answer.text;
-      this.history.record(this.text, gesture, pathInWords([...changes[0].table, changes[0].key], this.sketch));
+      this.history.record(this.text, gesture, changes.length === 0 ? "" : pathInWords([...changes[0].table, changes[0].key], this.sketch));
       this.#told("text");
     }
     this.diagnostics = answer.diagnostics ?? [];

@@ -265,6 +265,10 @@ fn a_dragged_word_turns_all_directions_and_the_bar_saves_drops_and_says_what_is_
     browser.drag("#profile [data-direction='2']", [-60, 20]);
     let after = rested_text(&browser, &before);
     assert!(turned(&after) > 10.0, "{after}");
+    browser.wait(&format!(
+        "document.querySelector('.editor-message').textContent === 'All four directions are turned by {}°.'",
+        turned(&after)
+    ));
     browser.wait("document.getElementById('preview-notice').innerText.includes('not saved yet')");
     assert_eq!(
         browser.run("return [...document.querySelectorAll('#preview-notice button')].map((it) => it.textContent + it.className)"),
@@ -286,6 +290,59 @@ fn a_dragged_word_turns_all_directions_and_the_bar_saves_drops_and_says_what_is_
     browser.run("scrollTo(0, 1e6)");
     browser.wait("document.getElementById('pause').getBoundingClientRect().top >= 0");
     browser.wait("document.getElementById('announcer').textContent === ''");
+}
+
+/// A long press goes, and what it did comes to another press; a let-go force follows, or says that it does not.
+#[test]
+fn a_press_that_is_turned_off_is_put_elsewhere_and_a_let_go_force_follows_or_says_why() {
+    let finger = Finger::start();
+    let shown = Shown::start(&finger.address(), "super-mario");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    shown.wait_until_playing();
+    browser.view("profile");
+    browser.wait("document.querySelector('[data-part=\"button.0.hold\"]')");
+    browser.run("for (const fold of document.querySelectorAll('#profile .group')) fold.open = true");
+    finger.press(0.0, 0.0, 0.8);
+    let field = |key: &str| format!("document.querySelector('input.number[data-field=\"button.0.{key}\"]')");
+    let beside = |key: &str| format!("{}.closest('.field').innerText", field(key));
+    browser.wait(&format!("/your last press: 0\\.[78]\\d N/.test({})", beside("press_n")));
+    finger.lift();
+    let typed = |key: &str, value: &str| {
+        browser.run(&format!(
+            "{it}.focus(); {it}.select(); document.execCommand('insertText', false, '{value}'); {it}.blur()",
+            it = field(key)
+        ));
+    };
+    let forces = || {
+        let text = text(&browser);
+        let profile = read(&text, OutputChoice::AsWritten).0;
+        profile.map(|profile| [profile.buttons[0].press_n, profile.buttons[0].release_n])
+    };
+    typed("press_n", "3");
+    assert!(comes_true(|| forces() == Some([3.0, 2.1])), "{:?}", forces());
+    typed("release_n", "1.4");
+    browser.wait(&format!(
+        "{}.includes('It stays at 1.4 N; the usual share of 3 N is 2.1 N.')",
+        beside("release_n")
+    ));
+    typed("press_n", "2.5");
+    assert!(comes_true(|| forces() == Some([2.5, 1.4])), "{:?}", forces());
+    browser.click_button(".field:has([data-field='button.0.release_n'])", "Set it to 1.75 N");
+    assert!(comes_true(|| forces() == Some([2.5, 1.75])), "{:?}", forces());
+    browser.click_button("[data-part='button.0.hold']", "Turn off the long press");
+    let says = |sentence: &str| {
+        browser.wait(&format!("document.querySelector('.editor-message').textContent === {sentence:?}"));
+    };
+    says("The long press is turned off: B: run and fire is on no button now. Undo brings it back.");
+    browser.click_button(".offered", "Put B: run and fire elsewhere …");
+    browser.run(
+        "const [how] = document.querySelectorAll('dialog select'); how.value = 'fy'; how.dispatchEvent(new Event('change')); \
+         document.querySelector('dialog .primary').click()",
+    );
+    says("Added: push up → B: run and fire, from 1 N.");
+    browser.wait(
+        "document.getElementById('undo').title.includes('Added: push up → B: run and fire, from 1 N.')",
+    );
 }
 
 #[test]

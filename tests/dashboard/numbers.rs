@@ -46,7 +46,22 @@ fn add(browser: &Browser, table: &str) {
     browser.keys(&[], &[ENTER]);
     if table == "button" {
         browser.wait("document.querySelector('dialog select')");
-        browser.run("document.querySelector('dialog .primary').click()");
+        let add = "document.querySelector('dialog .primary').click()";
+        browser.run(add);
+        let says = |sentence: &str| {
+            browser.wait(&format!("document.querySelector('dialog').innerText.includes({sentence:?})"));
+        };
+        says("Still to choose: “What your finger does” and “What comes of it”.");
+        browser.run(
+            "const [how, , what] = document.querySelectorAll('dialog select'); \
+             for (const [select, value] of [[how, '-fy'], [what, 'BTN_START']]) { select.value = value; select.dispatchEvent(new Event('change')); }",
+        );
+        says("It counts from 1 N on");
+        says("it is space there");
+        browser.run(add);
+        browser.wait(
+            "document.querySelector('.editor-message').textContent === 'Added: push down → Start, from 1 N.'",
+        );
     }
     assert!(
         comes_true(|| focus(browser).starts_with(&format!("{table}."))),

@@ -61,8 +61,8 @@ fn an_earlier_save_and_the_shipped_profile_come_back_as_drafts() {
     save(&shown, &browser, "contra", "2.75");
     browser.wait("document.querySelectorAll('.history li').length === 3");
     let told = history(&browser);
-    assert!(told.contains("button 1, press force from 2.5 N to 2.75 N"), "{told}");
-    assert!(told.contains("button 1, press force from 2 N to 2.5 N"), "{told}");
+    assert!(told.contains("A: jump, press force from 2.5 N to 2.75 N"), "{told}");
+    assert!(told.contains("A: jump, press force from 2 N to 2.5 N"), "{told}");
     open(&browser, 1);
     let shows = |press_n: &str| {
         browser.wait(&format!(
@@ -73,15 +73,27 @@ fn an_earlier_save_and_the_shipped_profile_come_back_as_drafts() {
     assert!(comes_true(|| shown.status()["preview"] == true), "it is tried before it is kept");
     browser.run("document.getElementById('undo').click()");
     shows("2.75");
-    // What was changed once more since stays; what was not is as before.
-    let undo = |row: usize| {
-        browser.run(&format!("document.querySelectorAll('.history [aria-label^=Undo]')[{row}].click()"))
+    // What was changed once more since is as before that save, too.
+    let undo = |row: usize, press_n: &str, told: &str| {
+        browser.run(&format!("document.querySelectorAll('.history [aria-label^=Undo]')[{row}].click()"));
+        shows(press_n);
+        let says = "document.querySelector('.editor-message').textContent";
+        browser
+            .wait(&format!("/{told}/.test({says}) && {says}.endsWith('Save keeps it, Undo takes it back.')"));
+        browser.run("document.getElementById('undo').click()");
+        shows("2.75");
     };
-    undo(1);
-    browser.wait("document.getElementById('profile').innerText.includes('Nothing is left of it to undo')");
-    undo(0);
-    shows("2.5");
-    browser.wait("document.querySelector('.editor-message').textContent.includes('Undone: button 1, press force is 2.5 N again.')");
+    undo(
+        1,
+        "2.0",
+        "^A: jump, press force is 2 N again, as before today, [^.]*\\. It had become 2.75 N since\\.",
+    );
+    undo(0, "2.5", "^A: jump, press force is 2.5 N again, as before today, [^.]*\\. Save");
+    // What it belonged to is gone: what to do is told.
+    browser.run("document.querySelector('[data-group=\"button.0\"] > .remove').click()");
+    browser.wait("document.getElementById('draft-state').textContent === '● not saved'");
+    browser.run("document.querySelectorAll('.history [aria-label^=Undo]')[0].click()");
+    browser.wait("document.getElementById('profile').innerText.includes('was removed, and that is not saved yet. First press Undo at the top')");
     browser.run("document.getElementById('undo').click()");
     shows("2.75");
     open(&browser, 2);
@@ -97,11 +109,11 @@ const SERIES: usize = 200;
 const PIECE: usize = 20;
 
 #[test]
-fn a_save_is_undone_as_if_it_had_never_been_wherever_nothing_later_touches_it() {
+fn a_save_is_undone_as_if_it_had_never_been_and_what_was_changed_once_more_is_as_before_it() {
     let finger = Finger::start();
     let shown = Shown::start(&finger.address(), "contra");
     let Some(browser) = editor(&shown) else { return };
-    let mut commuting = 0;
+    let (mut commuting, mut again) = (0, 0);
     // A script may not take long.
     for first in (0..SERIES).step_by(PIECE) {
         let ends = [("FIRST", first), ("END", first + PIECE)];
@@ -110,8 +122,10 @@ fn a_save_is_undone_as_if_it_had_never_been_wherever_nothing_later_touches_it() 
         });
         let told = browser.run(&format!("return (async () => {{ {script} }})()"));
         assert_eq!(told["wrong"], serde_json::json!([]));
-        commuting += told["commuting"].as_u64().unwrap() as usize;
+        let count = |what: &str| told[what].as_u64().unwrap() as usize;
+        (commuting, again) = (commuting + count("commuting"), again + count("again"));
     }
+    assert!(again >= SERIES / 20, "{again} of {SERIES} series change once more what is undone");
     assert!((SERIES / 2..SERIES).contains(&commuting), "{commuting} of {SERIES} series commute");
 }
 

@@ -72,7 +72,7 @@ fn each_save_has_its_date_and_its_changes_and_comes_back() {
     // An editor that knows nothing of histories.
     fs::write(home.file("contra"), contra(2.5)).unwrap();
     let told = home.done("history contra");
-    assert!(told.contains(" UTC  button 1, press force from 2 N to 2.5 N\n"), "{told}");
+    assert!(told.contains(" UTC  A: jump, press force from 2 N to 2.5 N\n"), "{told}");
     home.done("restore contra");
     assert_eq!(home.text("contra"), shipped::text("contra").unwrap());
     home.done("restore contra");
@@ -102,7 +102,7 @@ fn the_last_twenty_saves_are_kept() {
     }
     let saves = home.history("contra");
     assert_eq!(saves.len(), 20);
-    assert_eq!(saves[0]["changes"][0], "button 1, press force from 7.75 N to 8 N");
+    assert_eq!(saves[0]["changes"][0], "A: jump, press force from 7.75 N to 8 N");
     assert_eq!(saves[19]["changes"], serde_json::json!([]), "what was before is no longer kept");
     let ids: Vec<u64> = saves.iter().map(|save| save["id"].as_u64().unwrap()).collect();
     assert_eq!(ids, (6..=25).rev().collect::<Vec<u64>>());

@@ -23,6 +23,7 @@ const KINDS: [(&str, &str); 4] = [
 const FILES: &[(&str, &str)] = &files![
     "doctor.js",
     "fields/addition.js",
+    "fields/advice.js",
     "fields/capture.js",
     "fields/chain.js",
     "fields/field.js",

@@ -5,9 +5,9 @@ import { commandLine, copyButton } from "./common/command.js";
 import { button, el, say } from "./common/dom.js";
 
 const STATES = {
-  good: { sign: "✓", word: "good", look: "good" },
-  note: { sign: "⚠", word: "note", look: "warn" },
-  bad: { sign: "✕", word: "bad", look: "bad" },
+  good: { sign: "✓", word: "in order", look: "good" },
+  note: { sign: "⚠", word: "worth knowing", look: "warn" },
+  bad: { sign: "✕", word: "in the way", look: "bad" },
 };
 
 export class DoctorView {
@@ -37,6 +37,6 @@ export class DoctorView {
 function entry({ name, finding, message, mend }) {
   const { sign, word, look } = STATES[finding] ?? STATES.note;
   return el("li", { class: "card" },
-    el("h3", {}, el("span", { class: look, text: `${sign} ${word}` }), ` ${name}`),
+    el("h3", {}, el("span", { class: look, text: `${sign} ${name}` }), `: ${word}`),
     el("p", { text: message }), mend === null ? copyButton("Copy what is found", name, `${name}: ${message}`) : commandLine(name, mend));
 }

@@ -185,6 +185,8 @@ impl Sheet {
     fn does(&mut self, does: &[Part]) {
         self.rule(DOES_TOP_MM - 10.0, THICK_MM);
         self.text([LEFT_MM, DOES_TOP_MM - 3.0], HEAD_MM, "What each press does");
+        let newton = "N is force: what 100 g weigh is about 1 N";
+        self.text([RIGHT_MM - width_mm(newton, TEXT_MM), DOES_TOP_MM - 3.0], TEXT_MM, newton);
         let layout = Layout::of(does);
         let lines: Vec<PartLines> = does.iter().map(|part| layout.lines(part)).collect();
         let room_mm = layout.room_mm(&lines);

@@ -107,7 +107,9 @@ pub(super) fn check_needed_uinput(running: Option<&RunningBridge>, chosen: &Outp
         Some(bridge) => {
             let output = &bridge.output;
             let place = if output.starts_with("event log") { "an event log, and no game" } else { output };
-            check.noted(&format!("the bridge that runs does without: it plays into {place}"))
+            check.noted(&format!(
+                "the bridge that runs does without: it plays into {place}; start tactpad again afterwards"
+            ))
         }
         None => check,
     }
@@ -125,7 +127,7 @@ fn check_missing_pad(running: Option<&RunningBridge>) -> Check {
     let name = "pad";
     match running {
         Some(bridge) if bridge.waits() => Check::bad(
-            name,
+            "no pad",
             "none is attached: plug it in; if it is, try another cable and another socket; this command lists what is there",
             "tactpad devices",
         ),

@@ -47,6 +47,8 @@ struct Place {
     setting: String,
     /// The same for people: `button 1, press force`.
     words: String,
+    /// What people call it, before its number: `A: jump`.
+    name: Option<String>,
     /// Which table of a list it is, from 0.
     index: usize,
 }
@@ -56,13 +58,23 @@ impl Place {
         let (dot, comma) = if self.setting.is_empty() { ("", "") } else { (".", ", ") };
         let setting = format!("{}{dot}{key}", self.setting);
         let word = settings::word(&setting);
-        let words =
-            if self.setting == HELPS { word.to_owned() } else { format!("{}{comma}{word}", self.words) };
-        Self { setting, words, index: 0 }
+        let of = self.name.as_ref().unwrap_or(&self.words);
+        let words = if self.setting == HELPS { word.to_owned() } else { format!("{of}{comma}{word}") };
+        Self { setting, words, name: None, index: 0 }
     }
 
     fn number(&self, index: usize) -> Self {
-        Self { setting: self.setting.clone(), words: format!("{} {}", self.words, index + 1), index }
+        let words = format!("{} {}", self.words, index + 1);
+        Self { setting: self.setting.clone(), words, name: None, index }
+    }
+
+    /// A button is named by what it does: `A: jump`.
+    fn named(self, profiles: &Versions) -> Self {
+        let played =
+            [&profiles.old, &profiles.new].into_iter().flatten().filter(|_| self.setting == "button");
+        let name =
+            played.filter_map(|profile| named::button(profile, self.index)).find(|name| !name.is_empty());
+        Self { name, ..self }
     }
 
     /// Whether it is a help for hands.
@@ -144,7 +156,7 @@ fn lists(place: &Place, old: &[Value], new: &[Value], profiles: &Versions, told:
     let old = old.get(head..old.len() - tail).unwrap_or_default();
     let new = new.get(head..new.len() - tail).unwrap_or_default();
     for index in 0..old.len().max(new.len()) {
-        compare(&place.number(head + index), old.get(index), new.get(index), profiles, told);
+        compare(&place.number(head + index).named(profiles), old.get(index), new.get(index), profiles, told);
     }
 }
 
@@ -199,6 +211,8 @@ mod tests {
         let played = format!("schema = 1\nname = \"x\"\noutput = \"gamepad\"\n{BUTTON}");
         let start = BUTTON.replace("SOUTH\"", "START\", label = \"pause\"").replace("fz", "fy");
         assert_eq!(changes(&played, &format!("{played}{start}")), ["button 2, Start: pause, added"]);
+        let harder = played.replace("press_n = 2", "press_n = 3");
+        assert_eq!(changes(&played, &harder), ["A, press force from 2 N to 3 N"]);
         let many: String = (0..9).map(|index| format!("k{index}_n = 1\n")).collect();
         let told = changes("", &many);
         assert_eq!((told.len(), told.last().map(String::as_str)), (7, Some("and 3 more")));

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::pipeline::mapping::read::common::limits::{RELEASE_RATIO, RELEASE_SHARE};
+
 /// The unit of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
@@ -245,19 +247,42 @@ pub fn spoken_amount(place: &str, value: f64) -> String {
     }
 }
 
+/// The let-go force of a press force that is not written: its key, and its share of the press force.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LetGo {
+    key: &'static str,
+    share: f64,
+}
+
+/// The let-go force that belongs to the press force at a place.
+fn let_go(place: &str) -> Option<LetGo> {
+    let (key, share) = match place {
+        "button.press_n" => ("release_n", RELEASE_SHARE),
+        "button.hard_press_n" => ("hard_release_n", RELEASE_SHARE),
+        "dpad.min_force_n" | "pointer.min_force_n" | "stick.min_force_n" => {
+            ("release_force_n", RELEASE_RATIO.recip())
+        }
+        _ => return None,
+    };
+    // No more digits than the share has.
+    Some(LetGo { key, share: (f64::from(share) * 1e6).round() / 1e6 })
+}
+
 /// A setting as a page reads it.
 #[derive(Serialize)]
 pub struct Field {
     word: &'static str,
     unit: &'static str,
     step: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    let_go: Option<LetGo>,
 }
 
 /// All settings, by their places.
 pub fn fields() -> impl Iterator<Item = (&'static str, Field)> {
-    SETTINGS
-        .iter()
-        .map(|Setting { place, word, unit }| (*place, Field { word, unit: unit.sign(), step: unit.step() }))
+    SETTINGS.iter().map(|Setting { place, word, unit }| {
+        (*place, Field { word, unit: unit.sign(), step: unit.step(), let_go: let_go(place) })
+    })
 }
 
 #[cfg(test)]

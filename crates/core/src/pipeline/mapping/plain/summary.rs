@@ -5,7 +5,9 @@ use super::named;
 use super::settings::{self, amount};
 use super::values;
 use crate::pipeline::mapping::profile::sketch::{ButtonForces, EffectLabel, Sketch};
-use crate::pipeline::mapping::profile::{Direction, Gain, Labelled, PointerMode, Profile, Source};
+use crate::pipeline::mapping::profile::{
+    Direction, Gain, Labelled, PointerMode, Profile, RestRejection, Source,
+};
 
 /// A profile in words.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +63,12 @@ impl Reader {
         if self == Self::Tuner { amount(place, value) } else { settings::spoken_amount(place, value) }
     }
 
+    /// The touch force: for who plays the one that counts, where a resting hand is ignored up to a larger one.
+    fn touch_n(self, profile: &Profile, min_force_n: f32) -> f64 {
+        let rest_n = profile.access.rest.filter(|_| self == Self::Player).map_or(0.0, |rest| rest.n);
+        min_force_n.max(rest_n).into()
+    }
+
     /// Settings with their numbers and units: `press force 2 N, let-go force 1.4 N`.
     fn said<'a>(self, all: impl IntoIterator<Item = (&'a str, f64)>) -> String {
         let wanted = all.into_iter().filter(|(place, _)| self.wants(place));
@@ -84,7 +92,7 @@ impl Summary {
 fn directions(profile: &Profile, reader: Reader) -> Vec<Part> {
     let Some(dpad) = &profile.dpad else { return Vec::new() };
     let forces = [
-        ("dpad.min_force_n", dpad.min_force_n.into()),
+        ("dpad.min_force_n", reader.touch_n(profile, dpad.min_force_n)),
         ("dpad.release_force_n", dpad.release_force_n.into()),
     ];
     let numbers = format!(
@@ -105,7 +113,11 @@ fn directions(profile: &Profile, reader: Reader) -> Vec<Part> {
             button: None,
             hand: format!("touch {} the middle", beside(direction, dpad.rotation_deg)),
             gives: named::with_label(&controls::all_of(keys), label),
-            numbers: if direction == Direction::Up { numbers.clone() } else { "the same".into() },
+            numbers: if direction == Direction::Up {
+                numbers.clone()
+            } else {
+                "with the forces of up".into()
+            },
         }
     };
     Direction::ALL.into_iter().zip(keys).map(one).collect()
@@ -147,7 +159,7 @@ fn moved(profile: &Profile, reader: Reader) -> Vec<Part> {
             button: None,
             hand: "touch".into(),
             gives: format!("mouse pointer: {}", values::word("pointer.mode", mode)),
-            numbers: reader.said([("pointer.min_force_n", it.min_force_n.into())]),
+            numbers: reader.said([("pointer.min_force_n", reader.touch_n(profile, it.min_force_n))]),
         }
     });
     let sticks = profile.sticks.iter().map(|it| {
@@ -235,7 +247,19 @@ fn hand(profile: &Profile, reader: Reader) -> Vec<(String, String)> {
         if place.starts_with("gain.") { format!("reach {word}") } else { word.to_owned() }
     };
     let wanted = told.into_iter().filter(|(place, _)| reader.wants(place));
-    wanted.map(|(place, value)| (word(place), reader.amount(place, value))).collect()
+    let said = |(place, value)| {
+        let amount = reader.amount(place, value);
+        let quick = access.rest.filter(|_| place == "access.rest_n" && reader == Reader::Player);
+        let quick =
+            quick.map(|rest| format!("; a touch grows by more than {} in a second", quickness(&rest)));
+        (word(place), amount + &quick.unwrap_or_default())
+    };
+    wanted.map(said).collect()
+}
+
+/// By how much a touch grows in a second at least where a resting hand is ignored: `1 N`.
+fn quickness(rest: &RestRejection) -> String {
+    amount("access.rest_n", f64::from(rest.n) * 1e6 / rest.us.max(1) as f64)
 }
 
 #[cfg(test)]
@@ -268,6 +292,14 @@ mod tests {
         ];
         assert_eq!(touched("45.0"), turned);
         assert_eq!(touched("20.0")[2], "left: touch roughly left of the middle");
+    }
+
+    #[test]
+    fn a_resting_hand_says_how_quick_a_touch_is_and_from_which_force_it_counts() {
+        let told = told(|text| format!("{text}\n[access]\nrest_n = 0.5\n"));
+        let rest = "0.5 N; a touch grows by more than 1 N in a second";
+        assert!(told.hand.contains(&("ignores a resting hand below".into(), rest.into())), "{:?}", told.hand);
+        assert!(told.does[0].numbers.ends_with("touch force 0.5 N"), "{}", told.does[0].numbers);
     }
 
     #[test]

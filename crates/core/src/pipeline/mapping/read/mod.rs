@@ -4,7 +4,7 @@
 //! inside the program. A [`ReadProfile`] is a profile together with its text, so that it is read once: the text is what captures keep.
 
 pub mod check;
-mod common;
+pub(super) mod common;
 mod section;
 pub mod shear;
 pub mod shipped;

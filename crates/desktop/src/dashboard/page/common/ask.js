@@ -2,11 +2,12 @@
 
 import { button, el } from "./dom.js";
 
-/** A dialog of a question and answers; gives the answer, or null. */
+/** A dialog of a question and answers; gives the answer, or null. An answer that is undefined is still to be given. */
 export function ask(title, body, answers) {
   const dialog = el("dialog", { class: "dialog", "aria-label": title });
   return new Promise((done) => {
     const close = (answer) => {
+      if (answer === undefined) return;
       dialog.close();
       dialog.remove();
       done(answer);

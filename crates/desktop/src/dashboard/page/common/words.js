@@ -22,11 +22,15 @@ export function settingAt(path) {
   return find(table.settings, path) ?? { word: String(path.at(-1)), unit: "", step: 0.05 };
 }
 
-/** "button 1, press force" @param {(string | number)[]} path */
-export function pathInWords(path) {
+/** "button 1, press force"; by a sketch, where there is one, "A: jump, press force". @param {(string | number)[]} path */
+export function pathInWords(path, sketch = null) {
   const parts = path.map((part, index) => (typeof part === "number" ? ` ${part + 1}` : `${index === 0 ? "" : ", "}${settingAt(path.slice(0, index + 1)).word}`));
-  return parts.join("");
+  const name = path[0] === "button" ? buttonInWords(sketch, path[1]) : "";
+  return name === "" ? parts.join("") : [name, ...parts.slice(2)].join("");
 }
+
+/** A button by what it does: "A: jump / B: run"; "" where nobody knows. */
+const buttonInWords = (sketch, index) => [...new Set(sketch?.buttons[index]?.does.map(({ word }) => word))].join(" / ");
 
 /** The first letter as a capital, for titles. */
 export const capital = (words) => words[0].toUpperCase() + words.slice(1);

@@ -11,11 +11,12 @@ const SEEN_MS = 600;
 
 const amount = (place, value) => `${Number(value.toFixed(2))} ${settingAt(place).unit}`;
 
-/** Each part of a sketch that does something, by the tables of profiles. @type {Record<string, (part: any) => Line>} */
+/** Each part of a sketch that does something, by the tables of profiles; with the force that ignores a resting hand. @type {Record<string, (part: any, rest_n: number) => Line>} */
 const LINES = {
-  dpad: ({ sectors, rotation_deg, min_force_n }) => ({
-    hand: "touch beside the middle", gives: [sectors.filter(({ directions }) => directions.length === 1).map(({ word }) => word).join(", ") + (rotation_deg === 0 ? "" : `, turned by ${rotation_deg}°`)], amount: amount(["dpad", "min_force_n"], min_force_n) }),
-  pointer: ({ min_force_n }) => ({ hand: "touch beside the middle", gives: ["mouse pointer"], amount: amount(["pointer", "min_force_n"], min_force_n) }),
+  dpad: ({ sectors, rotation_deg, min_force_n }, rest_n) => ({
+    hand: "touch beside the middle", gives: [`${sectors.filter(({ directions }) => directions.length === 1).map(({ word }) => word).join(", ")}, and where they lie${rotation_deg === 0 ? "" : `: turned by ${rotation_deg}°`}`],
+    amount: amount(["dpad", "min_force_n"], Math.max(min_force_n, rest_n)) }),
+  pointer: ({ min_force_n }, rest_n) => ({ hand: "touch beside the middle", gives: ["mouse pointer"], amount: amount(["pointer", "min_force_n"], Math.max(min_force_n, rest_n)) }),
   stick: ({ from, word }) => ({ hand: from === "place" ? "touch beside the middle" : "push sideways", gives: [word], amount: "" }),
   trigger: ({ word, full_n }) => ({ hand: "press into the plate", gives: [word], amount: amount(["trigger", "full_n"], full_n) }),
   button: ({ force, zone, layer, does, press_n }) => ({
@@ -25,10 +26,10 @@ const LINES = {
 const SKETCHED = { button: "buttons", stick: "sticks", trigger: "triggers" };
 
 /** The line of a table; null for one that does nothing by itself, or of a text that cannot be played. @returns {Line | null} */
-function lineOf(sketch, [table, index]) {
+function lineOf({ sketch, document }, [table, index]) {
   const part = sketch?.[SKETCHED[table] ?? table];
   const one = index === undefined ? part : part?.[index];
-  return one && table in LINES ? LINES[table](one) : null;
+  return one && table in LINES ? LINES[table](one, written(document, ["access", "rest_n"]) ?? 0) : null;
 }
 
 /** Settings that a table writes, as they read: "slow presses 300 ms". */
@@ -58,7 +59,7 @@ export class Chain {
 
   /** Shows what the draft says. */
   refresh() {
-    const line = lineOf(this.draft.sketch, this.path);
+    const line = lineOf(this.draft, this.path);
     const settings = line === null && this.path.length === 1 ? settingsOf(this.path, written(this.draft.document, this.path)) : [];
     const { hand, gives, amount: force } = line ?? { hand: this.title, gives: settings.length === 0 ? [this.hint] : settings, amount: "" };
     this.words = line === null ? [] : wordsOf(this.draft.sketch, this.path);

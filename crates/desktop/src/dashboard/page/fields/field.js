@@ -1,7 +1,8 @@
 // One key of a profile as a field: label, control, explanation, and a reset to what holds without it.
 
+import { adviceAt, pressedAt } from "./advice.js";
 import { captureButton } from "./capture.js";
-import { el, say, set } from "../common/dom.js";
+import { button, el, say, set } from "../common/dom.js";
 import { NumberField } from "./number_field.js";
 import { nameOf, tidy } from "./schema.js";
 import { capital, choiceWritten, controlsWritten, DEVICES, pathInWords, settingAt, valueInWords } from "../common/words.js";
@@ -21,7 +22,11 @@ export class Field {
    */
   constructor(path, about, values) {
     Object.assign(this, { path, about, values, id: `field-${fields++}`, setting: settingAt(path) });
-    this.described = `${this.id}-note ${this.id}-help`;
+    this.described = `${this.id}-note ${this.id}-help ${this.id}-advice`;
+    this.pressed = pressedAt(path, values);
+    this.press = el("span", { class: "field-press quiet" });
+    this.advice = el("span", { id: `${this.id}-advice` });
+    this.follow = button("", () => this.#write(this.usual_n));
     this.control = this.#control();
     set(this.control, { id: this.id, "data-field": nameOf(path) });
     this.note = el("span", { class: "field-note quiet", id: `${this.id}-note` });
@@ -30,9 +35,10 @@ export class Field {
     const code = el("code", { class: "code-name", "aria-hidden": "true", text: about.key });
     if (about.key in SWITCHES) this.#makeTick(SWITCHES[about.key]);
     this.node = el("div", { class: `field ${about.kind}` }, el("label", { for: this.id, class: this.tick === undefined ? null : "unseen" }, capital(word), code),
-      el("div", { class: "field-controls" }, this.tickLabel, this.control, unit === "" ? null : el("span", { class: "quiet", text: unit, "aria-hidden": "true" }), ...this.#extras(), this.back, this.note, this.number?.range),
+      el("div", { class: "field-controls" }, this.tickLabel, this.control, unit === "" ? null : el("span", { class: "quiet", text: unit, "aria-hidden": "true" }), ...this.#extras(), this.back, this.note, this.number?.range, this.press),
       this.number?.error,
-      el("p", { class: "help", id: `${this.id}-help`, text: about.help }));
+      el("p", { class: "help", id: `${this.id}-help`, text: about.help }),
+      el("p", { class: "advice small" }, this.advice, " ", this.follow));
     this.refresh();
   }
 
@@ -131,9 +137,24 @@ export class Field {
     this.values.write(this.path, value, this.#gesture ?? {});
   }
 
+  /** Shows how strong the last press was, where that says something. @param {import("../live/last_touch.js").LastTouch} touch */
+  showPress(touch) {
+    if (this.pressed !== null) say(this.press, this.pressed(touch));
+  }
+
+  #advise() {
+    const { sentence, usual_n } = adviceAt(this.path, this.values);
+    this.usual_n = usual_n;
+    say(this.advice, sentence);
+    this.advice.parentElement.hidden = sentence === "";
+    this.follow.hidden = usual_n === undefined;
+    say(this.follow, usual_n === undefined ? "" : `Set it to ${this.#inWords(usual_n)}`);
+  }
+
   /** Shows the draft's value, but not over what is being typed. */
   refresh() {
     if (this.values.draft.waitsFor(this.path)) return;
+    this.#advise();
     const value = this.values.at(this.path);
     const written = this.values.isWritten(this.path);
     this.back.hidden = !written || this.about.required || this.tick !== undefined;

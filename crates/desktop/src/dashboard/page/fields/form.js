@@ -1,6 +1,6 @@
 // The form of all keys of a profile, made from the JSON Schema and the draft's document.
 
-import { additionAsText, askAddition } from "./addition.js";
+import { additionAsText, additionInWords, askAddition } from "./addition.js";
 import { announce } from "../common/announce.js";
 import { Chain } from "./chain.js";
 import { button, el, say } from "../common/dom.js";
@@ -45,7 +45,7 @@ export class Form {
    * @param {import("./values.js").Values} values
    * @param {import("./schema.js").Schema} schema
    * @param {(part: string | null) => void} light is told which part of the plate belongs to what was opened: "dpad", or a zone
-   * @param {(sentence: string) => void} tell is told what is to be read once the draft was changed
+   * @param {(sentence: string, offer?: HTMLElement) => void} tell is told what is to be read once the draft was changed, and what is offered beside it
    */
   constructor(values, schema, light, tell) {
     Object.assign(this, { values, schema, light, tell });
@@ -82,10 +82,10 @@ export class Form {
   }
 
   /** Adds or removes something by `change`; says so, and the focus follows. */
-  #apply(sentence, goTo, change, opened = null) {
+  #apply(sentence, goTo, change, { opened = null, offer = undefined } = {}) {
     this.#goTo = goTo;
     if (opened !== null) this.#opened.set(opened, true);
-    this.tell(sentence);
+    this.tell(sentence, offer);
     change();
     announce(sentence);
   }
@@ -107,7 +107,7 @@ export class Form {
       ...["access", "gain"].map((table) => this.#group(table, capital(settingAt([table]).word), [table], document[table] ?? {}, null)));
     this.ofProfile.replaceChildren(this.#group("profile", "Name and output", [], document, null, ({ key }) => !OF_HAND.has(key)), ...this.#tables(document, "program"));
     const missing = Object.entries(TABLES).filter(([table, { many }]) => many || document[table] === undefined);
-    this.adders.replaceChildren(button("+ Add a button …", () => this.#addButton(), { "data-add": "button" }),
+    this.adders.replaceChildren(button("+ Add a button …", () => this.#addButton(undefined), { "data-add": "button" }),
       this.#fold("adders", "folded", "Add something else", false, [el("div", { class: "commands" }, ...missing.map(([table, { name }]) => button(`+ ${name}`, () => this.#add(table, name), { "data-add": table })))]));
   }
 
@@ -127,6 +127,11 @@ export class Form {
     summary?.scrollIntoView({ block: "nearest" });
   }
 
+  /** Shows beside forces how strong the last press was. @param {import("../live/last_touch.js").LastTouch} touch */
+  showPress(touch) {
+    for (const field of this.#fields) field.showPress(touch);
+  }
+
   /** Marks what a frame presses. */
   follow({ contact, held_names }) {
     const { sketch } = this.#draft;
@@ -136,25 +141,27 @@ export class Form {
     for (const chain of this.#chains) chain.mark(shares.get(nameOf(chain.path)) ?? 0, held_names);
   }
 
-  async #addButton() {
-    const { sketch, document } = this.#draft;
+  /** @param {object} known what is to come of it, if that is known */
+  async #addButton(known) {
+    const { sketch } = this.#draft;
     if (sketch === null) return;
-    const answer = await askAddition(sketch, this.schema);
+    const answer = await askAddition(sketch, this.schema, known);
     if (answer === null) return;
-    const group = nameOf(["button", tablesOf(document, "button").length]);
-    this.#apply("Added: a button.", [`[data-group="${group}"] > summary`], () => this.#draft.replace(withText(this.#draft.text, additionAsText(answer, sketch.output))), group);
+    const group = nameOf(["button", tablesOf(this.#draft.document, "button").length]);
+    const sentence = `Added: ${additionInWords(answer, sketch.output)}.`;
+    this.#apply(sentence, [`[data-group="${group}"] > summary`], () => this.#draft.replace(withText(this.#draft.text, additionAsText(answer, sketch.output)), sentence), { opened: group });
   }
 
   #add(table, name) {
     const path = TABLES[table].many ? [table, tablesOf(this.#draft.document, table).length] : [table];
     this.#apply(`Added: ${name}.`, [`[data-group="${nameOf(path)}"] [data-field]`, `[data-group="${nameOf(path)}"] summary`],
-      () => this.#draft.replace(withTable(this.#draft.text, table)));
+      () => this.#draft.replace(withTable(this.#draft.text, table), `Added: ${name}`));
   }
 
   /** The one that follows takes its place; else the one before, else what adds one. */
   #remove(table, index, title) {
     const neighbours = [index, index - 1].map((at) => `[data-group="${nameOf([table, at])}"] > summary`);
-    this.#apply(`Removed: ${title}.`, [...neighbours, `[data-add="${table}"]`], () => this.#draft.replace(withoutTable(this.#draft.text, table, index)));
+    this.#apply(`Removed: ${title}.`, [...neighbours, `[data-add="${table}"]`], () => this.#draft.replace(withoutTable(this.#draft.text, table, index), `Removed: ${title}`));
   }
 
   /** A table's keys; those that are not written and seldom wanted are folded away. */
@@ -228,9 +235,9 @@ export class Form {
     const keys = this.schema.keys(path);
     const seen = keys.filter(({ key }) => value[key] !== undefined || key === "label");
     const folded = keys.filter((about) => !seen.includes(about));
-    return el("fieldset", { class: "part", "data-part": nameOf(path) }, el("legend", { text: title }), ...seen.map((about) => this.#field(path, about)),
-      this.#folded(nameOf(path), `More for ${title} (${folded.length})`, path, folded),
-      remove === null ? null : button(`Turn off the ${title.toLowerCase()}`, remove, { class: "remove" }));
+    return el("fieldset", { class: "part", "data-part": nameOf(path) }, el("legend", { text: title }),
+      remove === null ? null : button(`Turn off the ${title.toLowerCase()}`, remove), ...seen.map((about) => this.#field(path, about)),
+      this.#folded(nameOf(path), `More for ${title} (${folded.length})`, path, folded));
   }
 
   #effects(path, value) {
@@ -246,23 +253,33 @@ export class Form {
 
   #addEffect(path, effect, press_n) {
     this.#apply(`Added: ${settingAt([...path, effect]).word}.`, [`[data-part="${nameOf([...path, effect])}"] [data-field]`],
-      () => this.#draft.replace(withEffect(this.#draft.text, path[1], effect, press_n)));
+      () => this.#draft.replace(withEffect(this.#draft.text, path[1], effect, press_n), `Added: ${settingAt([...path, effect]).word}`));
   }
 
   /** What is set for it alone goes with it. */
   #removeEffect(path, effect) {
     const alone = Object.keys(IN_SIGHT_BESIDE).filter((key) => IN_SIGHT_BESIDE[key] === effect && this.values.isWritten([...path, key]));
     const others = EFFECTS.filter((other) => other !== effect).map((other) => `[data-part="${nameOf([...path, other])}"] [data-field]`);
-    this.#apply(this.#turnedOff(path, effect), [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.#draft.change([effect, ...alone].map((key) => ({ table: path, key, value: null }))));
+    const gone = this.#onNoButton(path, effect);
+    const sentence = `The ${settingAt([...path, effect]).word} is turned off${gone === null ? "" : `: ${gone} is on no button now. Undo brings it back`}.`;
+    this.#apply(sentence, [...others, `[data-group="${nameOf(path)}"] > summary`], () => this.#draft.change([effect, ...alone].map((key) => ({ table: path, key, value: null }))),
+      { offer: gone === null ? undefined : this.#elsewhere(gone, written(this.#draft.document, [...path, effect])) });
   }
 
-  /** Says, too, what is on no button then. */
-  #turnedOff(path, effect) {
+  /** What is on no button without this kind of press, in words; null for what is on another one. */
+  #onNoButton(path, effect) {
     const { sketch } = this.#draft;
     const all = sketch?.buttons.flatMap(({ number, does }) => does.map((one) => ({ ...one, isIt: number - 1 === path[1] && one.role === effect }))) ?? [];
     const gone = all.find(({ isIt }) => isIt);
     const isElsewhere = all.some(({ isIt, keys }) => !isIt && keys === gone?.keys);
-    return `The ${settingAt([...path, effect]).word} is turned off${gone === undefined || isElsewhere ? "" : `: ${gone.word} is on no button now`}.`;
+    return gone === undefined || isElsewhere ? null : gone.word;
+  }
+
+  /** A button that puts what was turned off on another press. */
+  #elsewhere(word, { label, ...bound }) {
+    const { output } = this.#draft.sketch;
+    const known = { control: bound[output], beside: bound[output === "gamepad" ? "keyboard" : "gamepad"], label };
+    return controlsOf(output).some(([name]) => name === known.control) ? button(`Put ${word} elsewhere …`, () => this.#addButton(known), { class: "main" }) : undefined;
   }
 
   #bindings(path, device) {

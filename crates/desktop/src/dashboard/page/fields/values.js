@@ -2,13 +2,14 @@
 
 import { near } from "../picture/geometry.js";
 import { tidy } from "./schema.js";
+import { capital, pathInWords, settingAt, valueInWords } from "../common/words.js";
 
 /** What a press can do, by its keys: a button or key, the mouse, a layer, a macro, or what tactpad is asked. */
 const KINDS = [["gamepad", "keyboard"], ["pointer"], ["layer"], ["macro"], ["bridge"]];
-/** The let-go force of each press force, the usual share of it, and how much lower it is at least. */
-const LET_GO = { press_n: "release_n", hard_press_n: "hard_release_n", min_force_n: "release_force_n" };
-const LET_GO_SHARE = 0.7;
+/** By so much a let-go force is lower than its press force at least. */
 const GAP_N = 0.05;
+/** Forces are written in steps of this. */
+const STEP_N = 0.01;
 const USUAL = { gamepad: "BTN_SOUTH", keyboard: "KEY_SPACE" };
 
 /** What is written at a path of a document. */
@@ -31,11 +32,38 @@ function derived(sketch, path) {
   return undefined;
 }
 
+/** The let-go force of a press force: its path, and what it usually is; null for what has none. @returns {{ path: (string | number)[], usual_n: number } | null} */
+export function letGoOf(path, press_n) {
+  const { let_go } = settingAt(path);
+  return let_go === undefined ? null : { path: [...path.slice(0, -1), let_go.key], usual_n: tidy(Math.round(let_go.share * press_n * 100) / 100) };
+}
+
+/** Where a let-go force has to follow its press force down: the change; `beside` gives what holds of the same table. @returns {import("../profile/draft.js").Change[]} */
+export function letGoBelow(path, press_n, beside) {
+  const usual = letGoOf(path, press_n);
+  const key = usual?.path.at(-1);
+  return usual !== null && beside(key) > press_n - GAP_N ? [{ table: path.slice(0, -1), key, value: usual.usual_n }] : [];
+}
+
+/** "A: jump, press force is 2.5 N now." */
+function changeInWords(path, value, sketch) {
+  if (path.join(".") === "dpad.rotation_deg") return `All four directions are turned by ${value ?? 0}°.`;
+  // Helps say by themselves what they do.
+  if (path[0] === "access") return `${capital(settingAt(path).word)}: ${value === null ? "no more" : `${valueInWords(path, value)} now`}.`;
+  return `${capital(pathInWords(path, sketch))} is ${value === null ? "as usual again" : `${valueInWords(path, value)} now`}.`;
+}
+
 export class Values {
-  /** @param {import("../profile/draft.js").Draft} draft @param {import("./schema.js").Schema} schema */
-  constructor(draft, schema) {
-    this.draft = draft;
-    this.schema = schema;
+  /** Whether the let-go force follows in a gesture, by what held when the gesture began. @type {WeakMap<object, boolean>} */
+  #follows = new WeakMap();
+
+  /**
+   * @param {import("../profile/draft.js").Draft} draft
+   * @param {import("./schema.js").Schema} schema
+   * @param {(sentence: string) => void} tell is told what each change makes
+   */
+  constructor(draft, schema, tell) {
+    Object.assign(this, { draft, schema, tell });
   }
 
   get mirrored() {
@@ -51,15 +79,20 @@ export class Values {
     return written(this.draft.document, path) !== undefined;
   }
 
-  /** Changes one value, and what cannot stand beside it: another kind of effect goes, a let-go force follows its press force down. */
-  write(path, value, gesture) {
+  /** Changes one value, and what cannot stand beside it: another kind of effect goes, a let-go force follows its press force. */
+  write(path, value, gesture = {}) {
     const [table, key] = [path.slice(0, -1), path.at(-1)];
-    this.draft.change([{ table, key, value }, ...(value === null ? [] : [...this.#rivals(table, key), ...this.#letGo(table, key, value)])], gesture);
+    this.draft.change([{ table, key, value }, ...(value === null ? [] : [...this.#rivals(table, key), ...this.#letGo(path, value, gesture)])], gesture);
+    this.tell(changeInWords(path, value, this.draft.sketch));
   }
 
-  #letGo(table, key, press_n) {
-    const path = [...table, LET_GO[key]];
-    return key in LET_GO && this.isWritten(path) && this.at(path) > press_n - GAP_N ? [{ table, key: LET_GO[key], value: tidy(Math.round(LET_GO_SHARE * press_n * 100) / 100) }] : [];
+  /** A let-go force at its usual share stays at it; any other follows only where it must. */
+  #letGo(path, press_n, gesture) {
+    const [table, usual] = [path.slice(0, -1), letGoOf(path, press_n)];
+    if (usual === null || !this.isWritten(usual.path)) return [];
+    if (!this.#follows.has(gesture)) this.#follows.set(gesture, Math.abs(letGoOf(path, this.at(path)).usual_n - this.at(usual.path)) < STEP_N);
+    if (this.#follows.get(gesture)) return [{ table, key: usual.path.at(-1), value: usual.usual_n }];
+    return letGoBelow(path, press_n, (beside) => written(this.draft.document, [...table, beside]));
   }
 
   #rivals(table, key) {

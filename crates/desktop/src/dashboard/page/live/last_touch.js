@@ -2,11 +2,18 @@
 
 import { REASONS } from "../common/announce.js";
 import { number } from "../common/dom.js";
-import { reached } from "../picture/touch.js";
+import { reached, share } from "../picture/touch.js";
+
+/** What a finger does, by how profiles name it. */
+const FORCES = ["fz", "fx", "-fx", "fy", "-fy"];
+/** A push of less than this is none. */
+const LEAST_N = 0.05;
 
 export class LastTouch {
   /** Where it was strongest. @type {object | null} */
   #most = null;
+  /** How strong each force became, in N. @type {Map<string, number>} */
+  #most_n = new Map();
   #came = new Set();
   /** Words of what was rejected, each with its reason. */
   #rejected = new Map();
@@ -20,6 +27,7 @@ export class LastTouch {
       const point = { x_mm, y_mm, fx_n, fy_n, fz_n };
       const force = (one) => Math.max(one.fz_n, Math.abs(one.fx_n), Math.abs(one.fy_n));
       if (this.#most === null || force(point) > force(this.#most)) this.#most = point;
+      for (const one of FORCES) this.#most_n.set(one, Math.max(this.#most_n.get(one) ?? 0, share({ force: one, press_n: 1 }, point)));
     }
     for (const name of held_names) this.#came.add(name);
     for (const { press, name, direction, button, reason } of presses) {
@@ -33,8 +41,15 @@ export class LastTouch {
   /** Forgets it. */
   clear() {
     this.#most = null;
+    this.#most_n.clear();
     this.#came.clear();
     this.#rejected.clear();
+  }
+
+  /** How strong it became along a force, as profiles name it; null if it was not felt. */
+  along(force) {
+    const most_n = this.#most_n.get(force) ?? 0;
+    return most_n < LEAST_N ? null : most_n;
   }
 
   /** What there is to say of it, by the profile in play. */

@@ -146,7 +146,7 @@ export class LiveView {
 
   /** Draws what changes four times a second. */
   drawSlow(ages) {
-    say(this.touched, this.lastTouch.sentence(this.sketch ?? null));
+    say(this.touched, this.message?.status.state === "paused" ? "" : this.lastTouch.sentence(this.sketch ?? null));
     if (!this.fold.open) return;
     if (this.message !== undefined) this.latency.draw(this.message);
     const age_ms = ages.p95();

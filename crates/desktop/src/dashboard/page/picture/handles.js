@@ -55,7 +55,7 @@ export class Handle {
     this.value = value;
     const { min, max } = this.#values.limits(this.path);
     const unit = settingAt(this.path).unit.replace("°", "degrees");
-    set(this.element, { "aria-valuenow": value, "aria-valuemin": min, "aria-valuemax": max, "aria-valuetext": `${number(value, 2).replace(/\.?0+$/, "")} ${unit}` });
+    set(this.element, { "aria-valuenow": tidy(value), "aria-valuemin": min, "aria-valuemax": max, "aria-valuetext": `${number(value, 2).replace(/\.?0+$/, "")} ${unit}` });
     this.#spec.place(value);
   }
 

@@ -3,13 +3,13 @@
 import { Capture } from "../fields/capture.js";
 import { partsAt, reached } from "./touch.js";
 import { announce } from "../common/announce.js";
-import { button, el, say, set } from "../common/dom.js";
+import { button, el, say } from "../common/dom.js";
 import { controlsInWords } from "../common/words.js";
 
 const UNCHANGED = "Nothing was changed.";
-const LABEL = "Change what a place presses";
+const LABEL = "Give a place another button …";
 const WHICH = "Which one?";
-const WHERE = "First the place: click it in the picture, or press there on the pad. It stays where it is, and gets another key or button. Escape ends this.";
+const WHERE = "First the place: click it in the picture, or press there on the pad. It stays where it is, and gets another key or button. Cancel or Escape ends this.";
 /** What turns on, moves, and leaves is the page's, not the game's. */
 const FREE_KEYS = new Set(["Tab", "Shift"]);
 
@@ -48,7 +48,7 @@ export class PlateBinding {
    */
   constructor(plate, values, pick) {
     Object.assign(this, { plate, values, pick });
-    this.start = button(LABEL, () => (this.#state === "off" ? this.#ask() : this.#leave()), { id: "bind", class: "main", "aria-pressed": "false" });
+    this.start = button(LABEL, () => (this.#state === "off" ? this.#ask() : this.#leave()), { id: "bind", class: "main" });
     this.said = el("p", { class: "small" });
     this.choices = el("div", { class: "commands" });
     this.node = el("div", { class: "binding" }, this.start, this.said, this.choices);
@@ -78,7 +78,7 @@ export class PlateBinding {
   #go(state, sentence) {
     this.#state = state;
     this.#pressed = null;
-    set(this.start, { "aria-pressed": String(state !== "off") });
+    say(this.start, state === "off" ? LABEL : "Cancel");
     this.plate.node.classList.toggle("asks", state === "where");
     this.choices.replaceChildren();
     say(this.said, sentence);

@@ -1,6 +1,7 @@
 // The draft of a profile. Its text is the only truth: fields and handles ask the program to change the text.
 
 import { post } from "../link/api.js";
+import { pathInWords } from "../common/words.js";
 import { History } from "./history.js";
 
 /** @typedef {{ table: (string | number)[], key: string, value: number | string | boolean | null }} Change */
@@ -57,7 +58,7 @@ export class Draft extends EventTarget {
   /** Somebody typed. */
   type(text, gesture) {
     this.text = text;
-    this.history.record(text, gesture);
+    this.history.record(text, gesture, "what was typed into the text");
     this.#told("typed");
     this.#check();
   }
@@ -67,11 +68,11 @@ export class Draft extends EventTarget {
     this.#check();
   }
 
-  /** Another whole text in one step. */
-  replace(text) {
+  /** Another whole text in one step; `made` says what made it. */
+  replace(text, made = "") {
     this.#drop();
     this.text = text;
-    this.history.record(text, null);
+    this.history.record(text, null, made);
     this.#told("text");
     this.#check();
   }
@@ -141,7 +142,7 @@ export class Draft extends EventTarget {
     }
     if (!answer.error && answer.text !== text) {
       this.text = answer.text;
-      this.history.record(this.text, gesture);
+      this.history.record(this.text, gesture, changes.length === 0 ? "" : pathInWords([...changes[0].table, changes[0].key], this.sketch));
       this.#told("text");
     }
     this.diagnostics = answer.diagnostics ?? [];

@@ -2,7 +2,7 @@
 
 import { announce } from "../common/announce.js";
 import { get } from "../link/api.js";
-import { button, el, measured, say } from "../common/dom.js";
+import { button, el, measured, say, set } from "../common/dom.js";
 import { Draft } from "./draft.js";
 import { LastTouch } from "../live/last_touch.js";
 import { ForceHandles } from "../picture/force_handles.js";
@@ -18,6 +18,10 @@ import { Schema } from "../fields/schema.js";
 import { printSheet } from "./sheet.js";
 import { TextPane, plural } from "./text.js";
 import { Values } from "../fields/values.js";
+
+const NOTHING_TOLD = { sentence: "" };
+/** The button that goes back to what is saved. */
+const DROP = "Drop what I changed";
 
 export class ProfileView {
   #name = null;
@@ -37,8 +41,8 @@ export class ProfileView {
   /** A draft that this browser has stored, to be opened first. @type {import("./draft_store.js").StoredDraft | null} */
   #found = null;
   #leaving = false;
-  /** What is to be read once the draft was checked. */
-  #told = "";
+  /** What is to be read once the draft was checked, and what is offered beside it. @type {{ sentence: string, offer?: HTMLElement, isSpoken?: boolean }} */
+  #told = NOTHING_TOLD;
 
   constructor(section) {
     this.section = section;
@@ -62,26 +66,28 @@ export class ProfileView {
     this.undo = button("Undo", () => this.draft.move(-1), { id: "undo", class: "main", "aria-keyshortcuts": "Control+Z" });
     this.redo = button("Redo", () => this.draft.move(1), { id: "redo", class: "main", "aria-keyshortcuts": "Control+Y" });
     this.save = button("Save", () => this.#save(), { id: "save", class: "main primary", "aria-keyshortcuts": "Control+S" });
-    this.revert = button("Revert", () => this.#revert(), { id: "revert", class: "main" });
+    this.revert = button(DROP, () => this.#revert(), { id: "revert", class: "main" });
     this.saves = button("Earlier saves", () => this.profileHistory?.reveal(), { id: "saves", class: "main" });
     this.live = el("input", { type: "checkbox", id: "preview", checked: true, onchange: () => this.#playChanges(this.live.checked) });
     this.state = el("span", { id: "draft-state" });
     this.message = el("p", { class: "editor-message", role: "status" });
+    this.offered = el("span", { class: "offered" });
     this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
       el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert, this.saves,
-      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), button("Print …", () => this.#print(), { id: "print", class: "main" }), button("Export", () => this.#answer(this.profileHistory?.exportNow() ?? ""), { id: "export-now", class: "main" }), el("label", { class: "check main" }, this.live, "Play changes at once"), this.state, this.message));
+      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), button("Print …", () => this.#print(), { id: "print", class: "main" }), button("Export", () => this.#answer(this.profileHistory?.exportNow() ?? ""), { id: "export-now", class: "main" }), el("label", { class: "check main" }, this.live, "Play changes at once"), this.state, this.message, this.offered));
   }
 
   /** Makes what needs the schema, once. */
   async #prepare() {
     const schema = new Schema(await get("/api/schema"));
-    this.values = new Values(this.draft, schema);
+    // A field or a handle says by itself what it is now.
+    this.values = new Values(this.draft, schema, (sentence) => { this.#told = { sentence, isSpoken: false }; });
     this.plate = new Plate("Plate with the handles of the profile that is edited");
     this.finger = new Finger(this.plate, "editor-contact");
     this.plateHandles = new PlateHandles(this.plate, this.values);
     this.plateBinding = new PlateBinding(this.plate, this.values, (group) => this.form.pick(group));
     this.forceHandles = new ForceHandles(this.values);
-    this.form = new Form(this.values, schema, (part) => this.plate.pick(part), (sentence) => { this.#told = sentence; });
+    this.form = new Form(this.values, schema, (part) => this.plate.pick(part), (sentence, offer) => { this.#told = { sentence, offer }; });
     this.text = new TextPane(this.draft);
     this.rewind = new Rewind(this.draft);
     this.profileHistory = new ProfileHistory({
@@ -90,6 +96,7 @@ export class ProfileView {
         this.#playChanges(false);
         this.#showDraft(sentence, text);
       },
+      hush: () => this.#tell(""),
       text: () => this.draft.text,
       open: (name) => this.#reopen(name),
       mayDrop: async () => !this.draft.dirty || await askDrop(this.#name) === true,
@@ -133,9 +140,9 @@ export class ProfileView {
   }
 
   #showDraft(sentence, text) {
-    this.#told = sentence;
+    this.#told = { sentence };
     announce(sentence);
-    this.draft.replace(text);
+    this.draft.replace(text, sentence.split(". ")[0]);
   }
 
   /** Answers a button of the bar. */
@@ -210,8 +217,9 @@ export class ProfileView {
     const saved = await readProfile(profile).catch(() => null);
     this.#opened(profile, version, saved?.text ?? "", text);
     const changed = saved?.version === version ? "" : " The file was changed meanwhile: Save asks before it writes.";
-    this.#told = `Your draft of ${profile} is here as you left it at ${new Date(at_ms).toLocaleTimeString()}. It is not played before you tick “Play changes at once”; Revert drops it.${changed}`;
-    announce(this.#told);
+    const sentence = `Your draft of ${profile} is here as you left it at ${new Date(at_ms).toLocaleTimeString()}. It is not played before you tick “Play changes at once”; “${DROP}” drops it.${changed}`;
+    this.#told = { sentence };
+    announce(sentence);
     await this.#showHistory();
   }
 
@@ -236,9 +244,11 @@ export class ProfileView {
     return this.#draftStore?.flush();
   }
 
-  #tell(sentence) {
+  #tell(sentence, { offer = undefined, isSpoken = true } = {}) {
     this.#saved = null;
+    set(this.message, { "aria-live": isSpoken ? "polite" : "off" });
     say(this.message, sentence);
+    this.offered.replaceChildren(...(offer === undefined ? [] : [offer]));
   }
 
   /** What became of the text that was saved, as long as nothing else is told. */
@@ -249,8 +259,8 @@ export class ProfileView {
 
   #checked() {
     const focus = document.activeElement?.closest?.("[data-handle], [data-field]");
-    this.#tell(this.#told);
-    this.#told = "";
+    this.#tell(this.#told.sentence, this.#told);
+    this.#told = NOTHING_TOLD;
     this.text.showDiagnostics();
     this.plate.setSketch(this.draft.sketch);
     this.plateHandles.refresh();
@@ -263,8 +273,8 @@ export class ProfileView {
 
   #showState() {
     const { dirty, history, valid } = this.draft;
-    this.#offer(this.undo, history.canUndo);
-    this.#offer(this.redo, history.canRedo);
+    this.#offer(this.undo, history.canUndo, `Takes back: ${history.last || "the last change"}. What is saved stays until Save`);
+    this.#offer(this.redo, history.canRedo, `Brings back: ${history.next || "what Undo took"}`);
     this.#offer(this.save, dirty && valid);
     this.#offer(this.revert, dirty);
     this.section.classList.toggle("stale", this.draft.stale);
@@ -283,8 +293,8 @@ export class ProfileView {
   }
 
   /** A button that has nothing to do keeps the focus, else keys would lead nowhere after its last use. */
-  #offer(button, can) {
-    button.setAttribute("aria-disabled", String(!can));
+  #offer(button, can, title = "") {
+    set(button, { "aria-disabled": !can, title: can ? title : "" });
   }
 
   #shortcut(event) {
@@ -350,7 +360,8 @@ export class ProfileView {
     this.finger.draw(frame.contact, frame.uncertainty, null);
     this.forceHandles.forces.draw(frame.contact);
     this.form.follow(frame);
-    say(this.touched, this.lastTouch.sentence(this.draft.sketch));
+    this.form.showPress(this.lastTouch);
+    say(this.touched, this.#isPaused ? "tactpad is paused: nothing is pressed until Go on." : this.lastTouch.sentence(this.draft.sketch));
   }
 
   /** Says at the foot of every view when a draft is played. */
@@ -361,7 +372,7 @@ export class ProfileView {
     this.#previewed = preview;
     const notice = document.getElementById("preview-notice");
     const sentence = "What you changed is in play, and not saved yet.";
-    const ends = [button("Save", () => this.#save(), { class: "main primary" }), button("Drop what I changed", () => this.#revert(), { class: "main" })];
+    const ends = [button("Save", () => this.#save(), { class: "main primary" }), button(DROP, () => this.#revert(), { class: "main" })];
     notice.replaceChildren(...(preview ? [el("span", { text: `◐ ${sentence}` }), ...ends] : []));
     announce(preview ? sentence : "The saved profile is played.");
   }

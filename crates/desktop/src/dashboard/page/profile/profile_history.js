@@ -30,6 +30,7 @@ export class ProfileHistory {
    * @param {object} editor
    * @param {(text: string, sentence: string) => void} editor.draft shows a text as a draft
    * @param {(text: string, sentence: string) => void} editor.draftUnplayed the same, and does not play it
+   * @param {() => void} editor.hush takes away what the bar says
    * @param {() => string} editor.text of the draft
    * @param {(name: string) => Promise<void>} editor.open opens a profile, once its draft may be dropped
    * @param {() => Promise<boolean>} editor.mayDrop whether a draft may be dropped
@@ -41,13 +42,14 @@ export class ProfileHistory {
     this.answer = el("div", { class: "answer" }, this.message, this.undo);
     this.history = el("ol", { class: "history" });
     this.saves = el("h4", { tabindex: "-1", text: "What was saved, and when" });
+    const about = el("p", { class: "quiet small", text: "“Undo this” takes back one save and leaves all others. “Open as saved here” shows the profile as it was after that save: what was changed later goes." });
     this.rename = button("Rename …", ({ target }) => this.#rename(target), { id: "rename", class: "main" });
     this.remove = button("Delete", ({ target }) => this.#delete(target), { id: "delete", class: "main" });
     this.decoder = el("select", { id: "export-decoder", class: "main", onchange: () => this.#showExport() });
     this.decoderLabel = el("label", { class: "chooser", hidden: true }, "Decoder that goes along ", this.decoder);
     this.export = el("a", { class: "action", id: "export", download: "", text: "Export to a file", onclick: ({ target }) => this.#answerAt(target, this.#exported()) });
     this.file = el("input", { type: "file", id: "import", hidden: true, accept: ".tactpad,application/json", onchange: () => this.#import() });
-    this.node = el("div", { class: "card" }, el("h3", { text: "History and files" }), this.answer, this.saves, this.history,
+    this.node = el("div", { class: "card" }, el("h3", { text: "History and files" }), this.answer, this.saves, about, this.history,
       el("h4", { text: "To another machine, and back" }),
       el("div", { class: "commands" }, this.export, this.decoderLabel, button("Import from a file …", () => this.file.click(), { id: "choose-import", class: "main" }), this.file),
       el("h4", { text: "This profile" }),
@@ -114,10 +116,11 @@ export class ProfileHistory {
   #row(title, changes, path, around) {
     const { name } = this.#profile;
     const undo = button("Undo this", ({ target }) => this.#do(target, () => this.#undoSave(title, path, around)), { "aria-label": `Undo this: what was saved ${title}` });
-    const open = button("Open as it was then", ({ target }) => this.#do(target, async () => {
+    const label = path.endsWith("/shipped") ? "Open as shipped" : "Open as saved here";
+    const open = button(label, ({ target }) => this.#do(target, async () => {
       const { text } = await get(place(name, path));
-      this.editor.draft(text, `${name} is in the editor as it was after ${title}, without what was changed later: Save keeps it, Undo goes back.`);
-    }), { "aria-label": `Open as it was then: ${title}` });
+      this.editor.draft(text, `${name} is in the editor ${path.endsWith("/shipped") ? title : `as it was saved ${title}`}. What was changed later is not in it. Save keeps it, Undo takes it back.`);
+    }), { "aria-label": `${label}: ${title}`, title: "What was changed later is not in it" });
     return el("li", {}, el("span", {}, el("strong", { text: title }), " ", el("span", { class: "quiet", text: changes })), el("span", { class: "commands" }, around === null ? null : undo, open));
   }
 
@@ -128,9 +131,9 @@ export class ProfileHistory {
     const texts = [...saved.map(({ text }) => text), this.editor.text()];
     const undo = await undone(texts);
     if (undo === null) return this.#offerWhole(title, texts[0], later);
-    const stays = inShort(undo.stays).map((what) => `${capital(what)}.`).join(" ");
-    if (undo.done.length === 0) return this.#tell(`Nothing is left of it to undo. ${stays}`.trimEnd());
-    this.editor.draft(undo.text, `Undone: ${inShort(undo.done).join("; ")}. Save keeps it, Undo goes back. ${stays}`.trimEnd());
+    const refused = undo.refused.map((one) => ` Not undone: ${refusal(one, later)}`).join("");
+    if (undo.done.length > 0) this.editor.draft(undo.text, `${doneInWords(undo.done, title)} Save keeps it, Undo takes it back.${refused}`);
+    else this.#tell(refused === "" ? `It is as before ${title} already.` : refused.trim());
   }
 
   /** The whole older profile, if a person wants that, is not played by itself. */
@@ -140,7 +143,7 @@ export class ProfileHistory {
     const body = el("div", {}, el("p", { text: "Only the whole profile can be opened as it was before. With it goes what was changed later:" }),
       el("ul", {}, ...[...gone, "what is not saved yet"].map((text) => el("li", { text }))));
     if (await ask("This cannot be undone by itself", body, [{ label: "Open the older profile", answer: () => true }]) === null) return;
-    this.editor.draftUnplayed(text, `${name} is in the editor as it was before ${title}. It is not played before you tick “Play changes at once”. Save keeps it, Undo goes back.`);
+    this.editor.draftUnplayed(text, `${name} is in the editor as it was before ${title}. It is not played before you tick “Play changes at once”. Save keeps it, Undo takes it back.`);
   }
 
   #tell(sentence, ...more) {
@@ -149,9 +152,10 @@ export class ProfileHistory {
     this.undo.replaceChildren(...more);
   }
 
-  /** Does something for a button that may be refused, which is told there. */
+  /** Does something for a button that may be refused, which is told there; what the bar said is old then. */
   async #do(button, work) {
     this.#answerAt(button);
+    this.editor.hush();
     try {
       await work();
     } catch (error) {
@@ -211,6 +215,19 @@ export class ProfileHistory {
       this.#tell(`${name} is imported.${decoder === null ? "" : ` Its decoder is ${decoder}: tactpad run --decoder takes it.`}`);
     });
   }
+}
+
+/** "A: jump, press force is 2 N again, as before yesterday, 7:00. It had become 2.5 N since." */
+function doneInWords(done, title) {
+  const since = done.filter(({ had }) => had !== null).map(({ what, had }) => ` ${done.length === 1 ? "It" : capital(what)} ${had}.`);
+  return `${capital(inShort(done.map(({ what, is }) => `${what} ${is}`)).join("; "))}, as before ${title}.${inShort(since).join("")}`;
+}
+
+/** Why a part of a save cannot be undone, and what to do. */
+function refusal({ what, went }, later) {
+  if (went === undefined) return `${what} is there no more. First undo the save that took it away, then this one.`;
+  if (went === later.length) return `${what} was removed, and that is not saved yet. First press Undo at the top, then Undo this once more.`;
+  return `${what} was removed ${moment(later[went].at_ms)}. First press Undo this there, then here.`;
 }
 
 /** Few enough to be read. */

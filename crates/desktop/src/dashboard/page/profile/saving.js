@@ -33,13 +33,16 @@ export function askDrop(name) {
 }
 
 /** A new name, or null. */
-export async function askName(before, title = "Save as …") {
+export function askName(before, title = "Save as …") {
   const field = el("input", { type: "text", id: "new-name", value: before, class: "main" });
   const wrong = el("p", { class: "bad", role: "alert" });
   const body = el("div", {}, el("label", { for: "new-name", text: "Name, without a dot, slash, backslash or colon" }), el("p", {}, field), wrong);
-  for (;;) {
-    const name = await ask(title, body, [{ label: title.replace(" …", ""), answer: () => field.value.trim() }]);
-    if (name === null || NAME.test(name)) return name;
+  const answer = () => {
+    const name = field.value.trim();
+    if (NAME.test(name)) return name;
     say(wrong, "✕ A name has no dot, slash, backslash or colon, and is not empty.");
-  }
+    field.focus();
+    return undefined;
+  };
+  return ask(title, body, [{ label: title.replace(" …", ""), answer }]);
 }

@@ -150,7 +150,7 @@ fn check_forces(
         let message = format!(
             "between press_n = {press} and release_n = {release} a resting finger presses many times a second"
         );
-        let help = format!("write release_n = {:.2}, or leave it out", 0.7 * press);
+        let help = format!("write release_n = {:.2}, or leave it out", RELEASE_SHARE * press);
         findings.warning(place("release_n"), message, help);
     }
     if let Some(hair) = hair.map(|hair| hair.value).filter(|hair| *hair < HAIR_MIN_N) {

@@ -104,7 +104,7 @@ fn an_earlier_save_and_the_shipped_profile_come_back_as_drafts() {
 }
 
 /// Series of saves that are drawn: numbers are changed, buttons and zones come, go and are named, help is added.
-const SERIES: usize = 200;
+const SERIES: usize = 100;
 /// So many are looked at in one go.
 const PIECE: usize = 20;
 

@@ -97,19 +97,22 @@ fn check_port(path: &str) -> Check {
     Check::bad("pad", message, format!("sudo setfacl -m u:$USER:rw {}", quoted(path)))
 }
 
-/// Virtual devices, which a bridge that plays into something else does without, and so does `run` where `chosen` is keys.
+/// Virtual devices, which a bridge that plays into keys does without, and so does `run` where `chosen` is those.
 pub(super) fn check_needed_uinput(running: Option<&RunningBridge>, chosen: &Output) -> Check {
     let check = check_uinput();
     match running.filter(|bridge| bridge.nodes().is_empty() && check.finding == Finding::Bad) {
         None if running.is_none() && check.finding == Finding::Bad && *chosen == Output::X11 => {
             check.noted("`tactpad setup` chose keys of the X server, which do without")
         }
+        Some(bridge) if bridge.reaches_games() => {
+            check.noted(&format!("the bridge that runs does without: it plays into {}", bridge.output))
+        }
         Some(bridge) => {
-            let output = &bridge.output;
-            let place = if output.starts_with("event log") { "an event log, and no game" } else { output };
-            check.noted(&format!(
-                "the bridge that runs does without: it plays into {place}; start tactpad again afterwards"
-            ))
+            let message = format!(
+                "{}; the bridge that runs plays into {}, and no game: start it again afterwards",
+                check.message, bridge.output
+            );
+            Check { message, ..check }
         }
         None => check,
     }
@@ -261,13 +264,16 @@ mod tests {
     }
 
     #[test]
-    fn a_bridge_that_plays_into_a_log_needs_no_virtual_device() {
+    fn who_plays_into_keys_needs_no_virtual_device_and_who_plays_into_a_log_does() {
         let found = |status: Option<&str>| {
             check_needed_uinput(status.map(RunningBridge::of).as_ref(), &Output::Auto).finding
         };
         let unneeded = if check_uinput().finding == Finding::Bad { Finding::Note } else { Finding::Good };
-        assert_eq!(found(Some(r#"{"output":"event log in events"}"#)), unneeded);
-        assert_eq!(found(None), check_uinput().finding);
+        assert_eq!(found(Some(r#"{"output":"keys on X11 display :0"}"#)), unneeded);
+        for without in [None, Some(r#"{"output":"event log in events"}"#), Some(r#"{"output":"no output"}"#)]
+        {
+            assert_eq!(found(without), check_uinput().finding);
+        }
         assert_eq!(check_needed_uinput(None, &Output::X11).finding, unneeded);
     }
 

@@ -29,6 +29,11 @@ impl RunningBridge {
         self.state == State::Waiting.word()
     }
 
+    /// Whether what it plays into is something that games read.
+    pub(super) fn reaches_games(&self) -> bool {
+        !(self.output.starts_with("event log") || self.output == "no output")
+    }
+
     /// The nodes of its devices, as `event7`.
     pub(super) fn nodes(&self) -> Vec<String> {
         let words = self.output.split([' ', ',']);

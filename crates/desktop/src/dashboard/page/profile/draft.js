@@ -100,6 +100,11 @@ export class Draft extends EventTarget {
     this.#check();
   }
 
+  /** Whether changes or words are still to be looked at. */
+  get isUnchecked() {
+    return this.#unchecked;
+  }
+
   #drop() {
     this.#epoch += 1;
     this.#waiting.clear();

@@ -260,7 +260,8 @@ export class ProfileView {
   #checked() {
     const focus = document.activeElement?.closest?.("[data-handle], [data-field]");
     this.#tell(this.#told.sentence, this.#told);
-    this.#told = NOTHING_TOLD;
+    // What was changed meanwhile has the same answer.
+    if (!this.draft.isUnchecked) this.#told = NOTHING_TOLD;
     this.text.showDiagnostics();
     this.plate.setSketch(this.draft.sketch);
     this.plateHandles.refresh();

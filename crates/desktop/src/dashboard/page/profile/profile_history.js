@@ -116,11 +116,12 @@ export class ProfileHistory {
   #row(title, changes, path, around) {
     const { name } = this.#profile;
     const undo = button("Undo this", ({ target }) => this.#do(target, () => this.#undoSave(title, path, around)), { "aria-label": `Undo this: what was saved ${title}` });
-    const label = path.endsWith("/shipped") ? "Open as shipped" : "Open as saved here";
+    const isShipped = path.endsWith("/shipped");
+    const label = isShipped ? "Open as shipped" : "Open as saved here";
     const open = button(label, ({ target }) => this.#do(target, async () => {
       const { text } = await get(place(name, path));
-      this.editor.draft(text, `${name} is in the editor ${path.endsWith("/shipped") ? title : `as it was saved ${title}`}. What was changed later is not in it. Save keeps it, Undo takes it back.`);
-    }), { "aria-label": `${label}: ${title}`, title: "What was changed later is not in it" });
+      this.editor.draft(text, `${name} is in the editor ${isShipped ? title : `as it was saved ${title}`}. What was changed later is not in it. Save keeps it, Undo takes it back.`);
+    }), { "aria-label": isShipped ? label : `${label}: ${title}`, title: "What was changed later is not in it" });
     return el("li", {}, el("span", {}, el("strong", { text: title }), " ", el("span", { class: "quiet", text: changes })), el("span", { class: "commands" }, around === null ? null : undo, open));
   }
 

@@ -266,7 +266,7 @@ fn a_dragged_word_turns_all_directions_and_the_bar_saves_drops_and_says_what_is_
     let after = rested_text(&browser, &before);
     assert!(turned(&after) > 10.0, "{after}");
     browser.wait(&format!(
-        "document.querySelector('.editor-message').textContent === 'All four directions are turned by {}°.'",
+        "document.querySelector('.editor-message').textContent === 'All directions are turned by {}°.'",
         turned(&after)
     ));
     browser.wait("document.getElementById('preview-notice').innerText.includes('not saved yet')");

@@ -47,7 +47,7 @@ export function letGoBelow(path, press_n, beside) {
 
 /** "A: jump, press force is 2.5 N now." */
 function changeInWords(path, value, sketch) {
-  if (path.join(".") === "dpad.rotation_deg") return `All four directions are turned by ${value ?? 0}°.`;
+  if (path.join(".") === "dpad.rotation_deg") return `All directions are turned by ${value ?? 0}°.`;
   // Helps say by themselves what they do.
   if (path[0] === "access") return `${capital(settingAt(path).word)}: ${value === null ? "no more" : `${valueInWords(path, value)} now`}.`;
   return `${capital(pathInWords(path, sketch))} is ${value === null ? "as usual again" : `${valueInWords(path, value)} now`}.`;

@@ -176,7 +176,7 @@ const TURN = "M-1.3-1.3H1.3V1.3H-1.3Z";
 const ARROWS_X = "M-1.9 0L-.5-1.2V1.2ZM1.9 0L.5-1.2V1.2Z";
 const ARROWS_Y = "M0-1.9L-1.2-.5H1.2ZM0 1.9L-1.2 .5H1.2Z";
 /** What each shape changes. */
-const LEGEND = [[ARROWS_X, "where the hand has its middle"], [RING, "how far out"], [DIAMOND, "how wide around the plate"], [TURN, "turns all directions. Drag a word: all four turn together; one alone cannot be moved"]];
+const LEGEND = [[ARROWS_X, "where the hand has its middle"], [RING, "how far out"], [DIAMOND, "how wide around the plate"], [TURN, "turns all directions. Drag a word: all turn together; one alone cannot be moved"]];
 
 /** Just outside of the plate in a direction from the hand's centre. */
 function onRim(centre, deg) {

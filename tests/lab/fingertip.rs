@@ -248,7 +248,7 @@ const SHOWN: [Filter; 9] = [
 ];
 const SHIPPED: [Filter; 3] = [(6, true), (3, true), (6, true)];
 
-/// Seeds on which nothing was chosen: that was done on 1 to 3, and 11 to 13.
+/// Windows were chosen on 1 to 3 and 11 to 13. What counts as a change was set anew after these were seen, against spikes.
 const SEEDS: std::ops::RangeInclusive<u64> = 21..=23;
 
 /// Half a percent of what was meant may be missed, and the event comes within so long of the crossing in 95 of 100, ms.
@@ -256,8 +256,9 @@ const MISSED_SHARE: f64 = 0.005;
 const DELAY_MAX_MS: f64 = 4.0;
 
 #[test]
-#[ignore = "proof: 260 s: half an hour of three players, by each of nine filters"]
+#[ignore = "proof: 260 s: misses 4 ms at p95 for a trembling player by 0.3 ms: half an hour of three players, by each of nine filters"]
 fn a_press_is_there_within_four_milliseconds_of_the_finger() {
+    let mut unreached = Vec::new();
     for ((player, shipped), seed) in
         PLAYERS.iter().zip(SHIPPED).flat_map(|it| SEEDS.map(move |seed| (it, seed)))
     {
@@ -274,15 +275,12 @@ fn a_press_is_there_within_four_milliseconds_of_the_finger() {
                 player.name,
                 meant.len()
             );
-            if filter == shipped {
-                assert!(p95_ms <= DELAY_MAX_MS, "{} {seed}: {p95_ms} ms", player.name);
-                assert!(
-                    missed as f64 <= MISSED_SHARE * meant.len() as f64,
-                    "{} {seed}: {missed}",
-                    player.name
-                );
-                assert_eq!(far, 0, "{} {seed}", player.name);
+            let is_reached =
+                p95_ms <= DELAY_MAX_MS && missed as f64 <= MISSED_SHARE * meant.len() as f64 && far == 0;
+            if filter == shipped && !is_reached {
+                unreached.push((player.name, seed));
             }
         }
     }
+    assert!(unreached.is_empty(), "{unreached:?}");
 }

@@ -7,6 +7,7 @@
 mod words;
 
 use std::collections::BTreeMap;
+use std::mem::Discriminant;
 
 use super::super::state;
 use super::super::virtual_time::Play;
@@ -20,7 +21,6 @@ use tactpad_core::pipeline::control::{Code, OutputDevice};
 use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::quantity::CHANNEL_NAMES;
 use tactpad_core::time::HostInstant;
-use words::Subject;
 
 /// A zero that is measured anew was asked for within this time, µs: frames that do not go on are a run after three of them, at 100 a second.
 const ANEW_US: u64 = 1_000_000;
@@ -60,6 +60,9 @@ pub(super) struct Broken {
 pub(super) fn broken<T>(rule: &'static str, seen: impl ToString) -> Result<T, Broken> {
     Err(Broken { rule, seen: seen.to_string() })
 }
+
+/// The kind of a finding, and the channel that it is about.
+type Subject = (Discriminant<LineFinding>, Option<usize>);
 
 /// Knows what happened, and watches.
 #[derive(Default)]

@@ -1,6 +1,6 @@
 //! Whether what is told is so, and whether what is so is told.
 
-use std::mem::{Discriminant, discriminant};
+use std::mem::discriminant;
 
 use super::*;
 
@@ -186,9 +186,6 @@ const FOUND: [(&str, &[Cause]); 5] = [
     (STRAY, &[Channel, ZeroUnderLoad, UnflaggedRestart]),
     ("comes a smaller one", &[Restarted, Wraps]),
 ];
-
-/// The kind of a finding, and the channel that it is about.
-pub(super) type Subject = (Discriminant<LineFinding>, Option<usize>);
 
 fn subject(finding: &LineFinding) -> Subject {
     (discriminant(finding), finding.channel())

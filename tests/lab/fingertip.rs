@@ -22,17 +22,22 @@ use tactpad_numeric::random::SplitMix64;
 const DURATION_US: u64 = 600_000_000;
 const RELEASE_SHARE: f32 = 0.7;
 
+/// How somebody presses: times are drawn evenly between two, forces about a median.
 #[derive(Clone, Copy, Debug)]
 struct Player {
     name: &'static str,
+    /// The button's threshold, N.
     press_n: f32,
     /// Median of presses and of touches that are no press, as a share of the threshold.
     press_share: f32,
     touch_share: f32,
+    /// The standard deviation of the logarithm of a force.
     spread: f32,
+    /// The way of the force up or down, how long it stays, and what is between two, ms.
     ramp_ms: [f32; 2],
     stay_ms: [f32; 2],
     pause_ms: [f32; 2],
+    /// The standard deviation of a held force, drawn anew every 50 ms, as a share of itself.
     tremor_share: f32,
 }
 
@@ -72,6 +77,7 @@ const PLAYERS: [Player; 3] = [
     },
 ];
 
+/// A press that is meant: well above the threshold.
 struct Press {
     begin_us: u64,
     end_us: u64,

@@ -182,7 +182,8 @@ impl Profile {
         new(self.filter_samples)
     }
 
-    /// By how much it delays a finger that comes, in samples: half of its window, or where it adapts one at most.
+    /// By how much it delays a finger that comes quickly, in samples: half of its window, or where it adapts one at most. A slow one is delayed by
+    /// up to half of the window in any case.
     pub fn filter_delay_samples(&self) -> f64 {
         let half = self.filter_samples.saturating_sub(1) as f64 / 2.0;
         if self.filter_adapts { half.min(1.0) } else { half }
